@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall,two_rooms,flat}.gltf.
+"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall,two_rooms,flat,office_floor}.gltf.
 
 The meeting room follows data/rooms/room_layouts.json; `--alternative N` (1-8, or `all`) writes
 meeting_room_altN.gltf from one of the other layouts that the paper's data allow. The output depends on nothing but
@@ -225,10 +225,7 @@ def open_office():
     height = 3.0
     add_office_structure(scene, stock, height)
 
-    # One desk, eight copies. It stands on its node, the user sits at +Z; a drawer unit on the right.
-    desk = scene.mesh("desk", scene.geometry(*joined(
-        box_geometry((-0.79, 0.715, -0.39), (0.79, 0.74, 0.39)), box_geometry((-0.78, 0, -0.35), (-0.75, 0.715, 0.35)),
-        box_geometry((0.36, 0.1, -0.35), (0.78, 0.715, 0.35)))), stock.material("wood"))
+    desk = desk_mesh(scene, stock)
     island_a = scene.node("island A", at=[3.0, 0, -2.5])
     island_b = scene.node("island B", at=[9.4, 0, -2.5], turned=rotation(90))
     for island, first in ((island_a, 1), (island_b, 5)):
@@ -244,6 +241,13 @@ def open_office():
         add_sensor(scene, ceiling, name, "EKMC1601111", [x, 0, z], yaw, 90)
     add_sensor(scene, None, "W1", "EKMC1604111", [0.03, 2.3, -6.2], -90, 10)
     return scene
+
+
+def desk_mesh(scene, stock):
+    """One for all copies. A desk stands on its node, the user sits at +Z; a drawer unit on the right."""
+    return scene.mesh("desk", scene.geometry(*joined(
+        box_geometry((-0.79, 0.715, -0.39), (0.79, 0.74, 0.39)), box_geometry((-0.78, 0, -0.35), (-0.75, 0.715, 0.35)),
+        box_geometry((0.36, 0.1, -0.35), (0.78, 0.715, 0.35)))), stock.material("wood"))
 
 
 def add_office_structure(scene, stock, height):
@@ -413,6 +417,68 @@ def flat():
     return scene
 
 
+# -- a floor of an office: invented, for 24 with desks of their own ----------------------------------------------------
+
+def office_floor():
+    """40 x 15 m: two meeting rooms at the left end with a pantry between them, six islands of four desks to the right."""
+    scene = Scene("office floor")
+    stock = Stock(scene)
+    height, width, depth, west = 2.8, 40.0, 15.0, 7.0
+    plaster, wood = stock.box("plaster"), stock.box("wood")
+    structure = scene.node("structure")
+    floor = scene.geometry([(0, 0, 0), (width, 0, 0), (width, 0, -depth), (0, 0, -depth)], [(0, 1, 2), (0, 2, 3)])
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.material("carpet")), mark={"type": "floor"})
+    areas = {"meeting_a": (0, west, 0, 6), "pantry": (0, west, 6, 9), "meeting_b": (0, west, 9, depth),
+             "open_west": (west, 23.5, 0, depth), "open_east": (23.5, width, 0, depth)}
+    for name, (x0, x1, z0, z1) in areas.items():
+        corners = [[x0, -z0], [x1, -z0], [x1, -z1], [x0, -z1]]
+        scene.node(name, structure, mark={"type": "area", "id": name, "polygon_xz_m": corners})
+    door_a, door_b, entry = (4.4, 5.3), (9.7, 10.6), (22.9, 24.1)
+    outer = [((-WALL, height, -depth - WALL), (width + WALL, height + WALL, WALL)),
+             ((-WALL, 0, 0), (entry[0], height, WALL)), ((entry[1], 0, 0), (width + WALL, height, WALL)),
+             ((entry[0], DOOR_HEIGHT, 0), (entry[1], height, WALL)),
+             ((-WALL, 0, -depth - WALL), (width + WALL, height, -depth)), ((-WALL, 0, -depth), (0, height, 0)),
+             ((width, 0, -8.1), (width + WALL, height, 0)), ((width, 0, -depth), (width + WALL, height, -9.1)),
+             ((width, DOOR_HEIGHT, -9.1), (width + WALL, height, -8.1))]
+    inner = wall_along_x(-6, 0, west, [], height) + wall_along_x(-9, 0, west, [], height)
+    for (x0, x1, z0, z1) in ((west, west, 0, door_a[0]), (west, west, door_a[1], 6), (west, west, 9, door_b[0]),
+                             (west, west, door_b[1], depth)):
+        inner.append(((x0 - WALL / 2, 0, -z1), (x1 + WALL / 2, height, -z0)))
+    for z0, z1 in (door_a, door_b):
+        inner.append(((west - WALL / 2, DOOR_HEIGHT, -z1), (west + WALL / 2, height, -z0)))
+    pillars = [((x - 0.2, 0, -7.7), (x + 0.2, height, -7.3)) for x in (16.6, 30.4)]
+    for number, (low, high) in enumerate(outer + inner + pillars, 1):
+        scene.box("wall %d" % number, structure, plaster, low, high)
+    for name, at, yaw, wide in (("lifts", [23.5, 0, 0], 0, 1.2), ("stairs", [width, 0, -8.6], 90, 1.0)):
+        scene.node(name, structure, at=at, turned=rotation(yaw),
+                   mark={"type": "entrance", "id": name, "width_m": wide, "outside_m": 1.5})
+    for name, (z0, z1), hinge in (("meeting_a_door", door_a, "left"), ("meeting_b_door", door_b, "right")):
+        scene.node(name, structure, at=[west, 0, -(z0 + z1) / 2], turned=rotation(90),
+                   mark={"type": "door", "id": name, "width_m": 0.88, "hinge": hinge, "state": "habit"})
+
+    desk = desk_mesh(scene, stock)
+    for number, (x, z) in enumerate([(x, z) for z in (-3.6, -11.4) for x in (12.0, 20.0, 30.0)]):
+        island = scene.node("island %d" % (number + 1), at=[x, 0, z])
+        add_island(scene, stock, island, desk, 1 + 4 * number)
+    for name, z, seats in (("A", -3.0, 8), ("B", -12.0, 6)):
+        length = 0.75 * seats / 2 + 0.2
+        scene.box("table " + name, None, wood, (3.3 - length / 2, 0.71, z - 0.6), (3.3 + length / 2, 0.74, z + 0.6))
+        scene.box("screen " + name, None, stock.box("screen"), (0.0, 0.9, z - 0.7), (0.06, 1.7, z + 0.7))
+        for k in range(seats):
+            side = 1 if k % 2 == 0 else -1
+            x = 3.3 + 0.75 * (k // 2 - (seats / 2 - 1) / 2)
+            add_place(scene, "%s%d" % (name, k + 1), "sit", ["meet"], [x, 0.53, z + side * 0.75], 0 if side > 0 else 180)
+    scene.box("counter", None, wood, (0.0, 0, -8.9), (3.0, 0.9, -8.3))
+    add_place(scene, "coffee", "stand", ["cook"], [1.5, 0, -7.95], 0)
+
+    ceiling = scene.node("ceiling sensors", at=[0, height - 0.01, 0])
+    places = [("C%d" % (k + 1), x, z) for k, (x, z) in enumerate(
+        [(x, z) for z in (-3.75, -11.25) for x in (10.3, 16.9, 23.5, 30.1, 36.7)])]
+    for name, x, z in [("MA", 3.5, -3.0), ("MB", 3.5, -12.0), *places]:
+        add_sensor(scene, ceiling, name, "EKMC1601111", [x, 0, z], 0, 90)
+    return scene
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--alternative", metavar="N",
@@ -425,7 +491,8 @@ def main():
 
     if arguments.alternative is None:
         rooms = {"meeting_room": meeting_room(layouts["meeting_room"], "meeting room"),
-                 "open_office": open_office(), "open_hall": open_hall(), "two_rooms": two_rooms(), "flat": flat()}
+                 "open_office": open_office(), "open_hall": open_hall(), "two_rooms": two_rooms(), "flat": flat(),
+                 "office_floor": office_floor()}
     else:
         names = [str(n) for n in range(1, len(alternatives) + 1)]
         wanted = names if arguments.alternative == "all" else [arguments.alternative]

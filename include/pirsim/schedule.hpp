@@ -42,8 +42,13 @@ struct HeldMeetingSpec {
   bool operator==(const HeldMeetingSpec&) const = default;
 };
 
-/// Meetings that are held in the simulated room. Ref: [ChenHongLuo2018].
+/// Who sits in meetings: people who come for them, or the staff who are at work then.
+enum class Attendees { guests, staff };
+
+/// Meetings that are held in one room of the scene. Ref: [ChenHongLuo2018].
 struct MeetingsSpec {
+  Attendees attendees = Attendees::guests;
+  std::string area;  ///< where the room is one of several
   int fewest_a_day = 2, most_a_day = 6;
   int fewest_people = 2;
   std::optional<int> most_people;  ///< none: 8, or as many as there are seats
@@ -52,7 +57,7 @@ struct MeetingsSpec {
   double from_h = 9.0, to_h = 18.0;  ///< assumed: when they begin and end
   double lateness_min = 2.0;  ///< mean of how much later than its beginning people come (`assumed`; 0 to 5 tried)
   std::vector<HeldMeetingSpec> held;  ///< these, every working day, instead of drawn ones
-  std::vector<std::string> seats;     ///< none: those that are nobody's own desk
+  std::vector<std::string> seats;     ///< none: those of the area that are nobody's own desk
   Where where;
   bool operator==(const MeetingsSpec&) const = default;
 };
@@ -99,7 +104,7 @@ struct ScheduleSpec {
   std::string first_day = "2026-03-02";  ///< ISO 8601; a Monday
   double from_h = 0.0, to_h = 24.0;      ///< the part of the day that a run simulates
   std::vector<StaffSpec> staff;
-  std::optional<MeetingsSpec> meetings;
+  std::vector<MeetingsSpec> meetings;      ///< of each room in which some are held
   std::optional<ProfileSpec> profile;      ///< instead of the agents' times and moves
   std::optional<HouseholdSpec> household;  ///< instead of staff, meetings and cleaning
   ClockSpec arrival{8.5, 30.0}, departure{17.5, 30.0}, lunch{12.0, 30.0};

@@ -107,7 +107,7 @@ ScheduleSpec usual_schedule(RoomKind kind, int most_seats, const Where& where) {
   ScheduleSpec schedule;
   schedule.where = where;
   if (kind == RoomKind::meeting) {
-    schedule.meetings.emplace();
+    schedule.meetings.emplace_back();
   } else {
     schedule.staff.emplace_back().count = most_seats;
   }

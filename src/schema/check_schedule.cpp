@@ -58,7 +58,7 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   }
   if (schedule.from_h >= schedule.to_h) tell("to_h", "`to` is not after `from`");
   if (schedule.departure.mean_h <= schedule.arrival.mean_h) tell("departure", "departure must be after arrival");
-  const bool is_office = !schedule.staff.empty() || schedule.meetings || schedule.cleaning_h || schedule.profile;
+  const bool is_office = !schedule.staff.empty() || !schedule.meetings.empty() || schedule.cleaning_h || schedule.profile;
   if (!is_office && !schedule.household)
     tell("staff", "nobody comes: give `staff`, `meetings`, `cleaning` or `household`");
   if (is_office && schedule.household)
@@ -96,7 +96,9 @@ void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& fault
   faults.together(schedule, path);
   if (!faults.few(path.field("staff"), schedule.staff.size(), limits::list_entries)) return;
   for (std::size_t i = 0; i < schedule.staff.size(); ++i) faults.numbers(schedule.staff[i], path.item("staff", i));
-  if (schedule.meetings) check(*schedule.meetings, path.field("meetings"), faults);
+  if (!faults.few(path.field("meetings"), schedule.meetings.size(), limits::list_entries)) return;
+  for (std::size_t i = 0; i < schedule.meetings.size(); ++i)
+    check(schedule.meetings[i], path.item("meetings", i), faults);
   if (schedule.profile) {
     faults.numbers(*schedule.profile, path.field("profile"));
     faults.together(*schedule.profile, path.field("profile"));

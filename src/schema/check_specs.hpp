@@ -82,7 +82,7 @@ void check_together(const WarmthSpec& warmth, const TellFault& tell);
 [[nodiscard]] std::string body_mesh_fault(const TriMesh& mesh);
 
 void check_together(const HeldMeetingSpec& held, const TellFault& tell);
-/// Calls `tell(i, j)` for meetings i and j < i that overlap, since there is one room.
+/// Calls `tell(i, j)` for meetings i and j < i that overlap, since they are in one room.
 void check_together(std::span<const HeldMeetingSpec> held, const std::function<void(std::size_t, std::size_t)>& tell);
 void check_together(const MeetingsSpec& meetings, const TellFault& tell);
 void check_together(const ProfileSpec& profile, const TellFault& tell);

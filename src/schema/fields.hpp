@@ -457,8 +457,10 @@ struct Fields<MeetingsSpec> {
     return IntegerRange{.min = meetings.fewest_people, .max = accepted::people_at_once.max};
   };
   static constexpr const char* name = "Meetings";
-  static constexpr const char* about = "Meetings that are held in the room.";
-  static constexpr std::tuple all{FIELD(fewest_a_day, accepted::meetings_a_day),
+  static constexpr const char* about = "Meetings that are held in a room.";
+  static constexpr std::tuple all{FIELD(attendees, "who sits in them: people who come for them, or the staff"),
+                                  FIELD(area, "where the room is one of several"),
+                                  FIELD(fewest_a_day, accepted::meetings_a_day),
                                   FIELD(most_a_day, no_fewer_meetings),
                                   FIELD(fewest_people, accepted::people_at_once),
                                   FIELD(most_people, no_fewer_people, "none: 8, or as many as there are seats"),
@@ -469,7 +471,7 @@ struct Fields<MeetingsSpec> {
                                   FIELD(lateness_min, NumberRange{.min = 0.0, .max = 60.0},
                                         "mean of how much later than its beginning people come"),
                                   FIELD(held, "these, every working day, instead of drawn ones"),
-                                  FIELD(seats, "none: those that are nobody's own desk"),
+                                  FIELD(seats, "none: those of the area that are nobody's own desk"),
                                   LABEL(where)};
 };
 template <>
@@ -519,7 +521,7 @@ struct Fields<ScheduleSpec> {
       FIELD(from_h, accepted::hour_of_day, "the part of the day that a run simulates begins"),
       FIELD(to_h, accepted::hour_or_next_days, "and ends; with a household 28, four o'clock of the next day"),
       FIELD(staff),
-      FIELD(meetings),
+      FIELD(meetings, "of each room in which some are held"),
       FIELD(profile, "instead of the agents' times and moves"),
       FIELD(household, "instead of staff, meetings and cleaning"),
       FIELD(arrival),

@@ -8,7 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
+#include "schema/areas.hpp"
 #include "schema/words.hpp"
 
 namespace pirsim {
@@ -20,12 +22,36 @@ constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1
 constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
 constexpr double pace_m_s = 1.2;                 // indoors; Ref: [Weidmann1993] has 1.34 in the open
 
+bool is_for(const SeatSpec& seat, std::string_view use) {
+  return seat.uses.empty() || std::ranges::find(seat.uses, use) != seat.uses.end();
+}
+
+bool is_in(const SeatSpec& seat, const std::string& area, const SceneSpec& scene) {
+  const auto found = std::ranges::find(scene.areas, area, &AreaSpec::id);
+  return found != scene.areas.end() && found->outline.contains(floor_point(seat.world_from_seat.origin));
+}
+
+/// Seats that a script sets aside for meetings in a room, by name or by area.
+std::set<std::string> set_aside(const MeetingsSpec& meetings, const SceneSpec& scene) {
+  std::set<std::string> seats(meetings.seats.begin(), meetings.seats.end());
+  if (!seats.empty() || meetings.area.empty()) return seats;
+  for (const SeatSpec& seat : scene.seats) {
+    if (is_in(seat, meetings.area, scene)) seats.insert(seat.id);
+  }
+  return seats;
+}
+
 /// Who owns which desk: seats that are asked for, then those that nobody has.
 class Desks {
  public:
   Desks(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics)
       : scene_(scene), diagnostics_(diagnostics) {
-    for (const SeatSpec& seat : scene.seats) names_.push_back(seat.id);
+    std::set<std::string> kept;
+    for (const MeetingsSpec& meetings : schedule.meetings) kept.merge(set_aside(meetings, scene));
+    for (const SeatSpec& seat : scene.seats) {
+      names_.push_back(seat.id);
+      if (is_for(seat, "work") && !kept.contains(seat.id)) desks_.push_back(seat.id);
+    }
     for (const StaffSpec& staff : schedule.staff) {
       for (const std::string& seat : staff.seats) {
         if (require(seat, staff.where) && !taken_.insert(seat).second) {
@@ -44,16 +70,19 @@ class Desks {
   /// Of the i-th of these; none if there are no more.
   std::optional<std::string> own(const StaffSpec& staff, std::size_t i) {
     if (i < staff.seats.size()) return staff.seats[i];
-    const auto free = std::ranges::find_if(names_, [&](const std::string& name) { return !taken_.contains(name); });
-    if (free == names_.end()) return std::nullopt;
+    const auto free = std::ranges::find_if(desks_, [&](const std::string& name) { return !taken_.contains(name); });
+    if (free == desks_.end()) return std::nullopt;
     taken_.insert(*free);
     return *free;
   }
 
+  [[nodiscard]] std::size_t size() const { return desks_.size(); }
+  [[nodiscard]] bool is_taken(const std::string& seat) const { return taken_.contains(seat); }
+
  private:
   const SceneSpec& scene_;
   Diagnostics& diagnostics_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, desks_;
   std::set<std::string> taken_;
 };
 
@@ -68,25 +97,41 @@ void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagn
   if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
 }
 
-/// As many as ever meet at once.
-int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
-  if (!schedule.meetings) return 0;
-  constexpr int usual = 8;  // Ref: [ChenHongLuo2018]
-  const MeetingsSpec& meetings = *schedule.meetings;
-  const int seats = static_cast<int>(meeting_seats(meetings, scene, schedule).size());
-  int most = meetings.most_people.value_or(std::min(usual, seats));
-  const auto require = [&](int people, const Where& where) {
-    if (people <= seats) return;
-    diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people for the " +
-                                 std::to_string(seats) + " seats of " + scene.name + " that are left for meetings");
-  };
-  if (!meetings.held.empty()) most = 0;
-  for (const HeldMeetingSpec& held : meetings.held) {
-    require(held.people, held.where);
-    most = std::max(most, held.people);
+int number_of(const std::vector<StaffSpec>& staff) {
+  int n = 0;
+  for (const StaffSpec& some : staff) n += some.count;
+  return n;
+}
+
+/// Are there seats and people for the meetings of a room?
+void check_meetings(const ScheduleSpec& schedule, std::size_t room, const SceneSpec& scene, Diagnostics& diagnostics) {
+  const MeetingsSpec& meetings = schedule.meetings[room];
+  const std::vector<std::string> areas = ids_of(scene.areas);
+  if (!meetings.area.empty() && std::ranges::find(areas, meetings.area) == areas.end()) {
+    return diagnostics.error(meetings.where, "schedule: meetings: area '" + meetings.area + "' is not in " +
+                                                 scene.name + did_you_mean(meetings.area, areas));
   }
-  require(std::max(meetings.held.empty() ? meetings.fewest_people : 0, most), meetings.where);
-  return most;
+  const std::vector<std::string> seats = meeting_seats(schedule, room, scene);
+  for (std::size_t other = 0; other < room; ++other) {
+    for (const std::string& seat : meeting_seats(schedule, other, scene)) {
+      if (std::ranges::find(seats, seat) == seats.end()) continue;
+      return diagnostics.error(meetings.where, "schedule: meetings: seat '" + seat +
+                                                   "' is another room's too: say the `area` or the `seats` of each");
+    }
+  }
+  const bool are_staff = meetings.attendees == Attendees::staff;
+  const auto require = [&](int people, const Where& where) {
+    if (people > static_cast<int>(seats.size())) {
+      diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people for the " +
+                                   std::to_string(seats.size()) + " seats of " + scene.name +
+                                   " that are left for meetings");
+    } else if (are_staff && people > number_of(schedule.staff)) {
+      diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people, and " +
+                                   std::to_string(number_of(schedule.staff)) + " of the staff");
+    }
+  };
+  for (const HeldMeetingSpec& held : meetings.held) require(held.people, held.where);
+  if (meetings.held.empty()) require(std::max(meetings.fewest_people, meetings.most_people.value_or(0)), meetings.where);
 }
 
 /// Who sleeps where: beds that are asked for, then those that nobody has.
@@ -137,17 +182,34 @@ PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t se
   return person;
 }
 
-std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
-                                       const ScheduleSpec& schedule) {
+std::vector<std::string> meeting_seats(const ScheduleSpec& schedule, std::size_t room, const SceneSpec& scene) {
+  const MeetingsSpec& meetings = schedule.meetings[room];
   if (!meetings.seats.empty()) return meetings.seats;
   Diagnostics told_elsewhere;
   Desks desks(schedule, scene, told_elsewhere);
   for (const StaffSpec& staff : schedule.staff) {
     for (std::size_t i = staff.seats.size(); i < static_cast<std::size_t>(staff.count); ++i) desks.own(staff, i);
   }
+  std::set<std::string> others;
+  for (std::size_t other = 0; other < schedule.meetings.size(); ++other) {
+    if (other != room) others.merge(set_aside(schedule.meetings[other], scene));
+  }
   std::vector<std::string> free;
-  while (const auto seat = desks.own({}, 0)) free.push_back(*seat);
+  for (const SeatSpec& seat : scene.seats) {
+    const bool is_here = meetings.area.empty() ? !others.contains(seat.id) : is_in(seat, meetings.area, scene);
+    if (is_here && is_for(seat, "meet") && !desks.is_taken(seat.id)) free.push_back(seat.id);
+  }
   return free;
+}
+
+int most_at_meeting(const ScheduleSpec& schedule, std::size_t room, const SceneSpec& scene) {
+  constexpr int usual = 8;  // Ref: [ChenHongLuo2018]
+  const MeetingsSpec& meetings = schedule.meetings[room];
+  if (!meetings.held.empty()) return std::ranges::max(meetings.held, {}, &HeldMeetingSpec::people).people;
+  if (meetings.most_people) return *meetings.most_people;
+  const int seats = static_cast<int>(meeting_seats(schedule, room, scene).size());
+  const int people = meetings.attendees == Attendees::staff ? number_of(schedule.staff) : usual;
+  return std::min({usual, seats, people});
 }
 
 std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene, std::uint64_t seed) {
@@ -172,20 +234,27 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
     for (int i = 0; i < staff.count; ++i) {
       const auto seat = desks.own(staff, static_cast<std::size_t>(i));
       if (!seat) {
-        diagnostics.error(staff.where, "schedule: more staff than the " + std::to_string(scene.seats.size()) +
-                                           " seats of " + scene.name);
+        diagnostics.error(staff.where, "schedule: more staff than the " + std::to_string(desks.size()) + " seats of " +
+                                           scene.name);
         break;
       }
       add(SchedulePart::staff, staff.role,
           std::string(word_of(staff.role)) + '_' + std::to_string(++numbers[staff.role]), *seat);
     }
   }
-  if (schedule.meetings) {
-    for (const std::string& seat : schedule.meetings->seats) desks.require(seat, schedule.meetings->where);
+  for (const MeetingsSpec& meetings : schedule.meetings) {
+    for (const std::string& seat : meetings.seats) desks.require(seat, meetings.where);
   }
-  const int guests = guests_of(schedule, scene, diagnostics);
+  for (std::size_t room = 0; room < schedule.meetings.size(); ++room) check_meetings(schedule, room, scene, diagnostics);
   diagnostics.throw_if_errors();
-  for (int i = 1; i <= guests; ++i) add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(i), "");
+  int guests = 0;
+  for (std::size_t room = 0; room < schedule.meetings.size(); ++room) {
+    if (schedule.meetings[room].attendees == Attendees::staff) continue;
+    for (int i = most_at_meeting(schedule, room, scene); i > 0; --i) {
+      add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(++guests), "");
+      people.back().room = room;
+    }
+  }
   if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
   return people;
 }

@@ -20,6 +20,7 @@ struct ScheduledPerson {
   Role role = Role::staff;  ///< of staff
   std::string seat;         ///< own desk, of staff; own bed, of residents
   PersonSpec person;        ///< without actions
+  std::size_t room = 0;     ///< of guests: index into the schedule's meetings
 };
 
 /// Somebody of no particular size, drawn from the study's seed; entity: which of the people so drawn.
@@ -30,8 +31,11 @@ struct ScheduledPerson {
 [[nodiscard]] std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene,
                                                      std::uint64_t seed);
 
-/// Where meetings are held: the seats that are asked for, or those that are nobody's own desk.
-[[nodiscard]] std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
-                                                     const ScheduleSpec& schedule);
+/// Where the schedule's room-th meetings are held: the seats that are asked for, or those of the area that are nobody's
+/// own desk and no other room's.
+[[nodiscard]] std::vector<std::string> meeting_seats(const ScheduleSpec& schedule, std::size_t room,
+                                                     const SceneSpec& scene);
+/// How many may meet there: as many as asked for, else eight, or as many as there are seats and, of the staff, people.
+[[nodiscard]] int most_at_meeting(const ScheduleSpec& schedule, std::size_t room, const SceneSpec& scene);
 
 }  // namespace pirsim

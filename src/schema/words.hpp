@@ -97,6 +97,10 @@ struct Words<action::IfTaken> {
       {{"next_action", action::IfTaken::next_action}, {"other_seat", action::IfTaken::other_seat}}};
 };
 template <>
+struct Words<Attendees> {
+  static constexpr WordList<Attendees, 2> all{{{"guests", Attendees::guests}, {"staff", Attendees::staff}}};
+};
+template <>
 struct Words<Role> {
   static constexpr WordList<Role, 3> all{
       {{"staff", Role::staff}, {"manager", Role::manager}, {"administrator", Role::administrator}}};

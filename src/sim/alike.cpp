@@ -25,8 +25,8 @@ auto fields(const UnevenArmsSpec& arms) {
 /// The body isn't compared here: it is compared as the person's own.
 bool same_part(const std::optional<ScheduledPerson>& a, const std::optional<ScheduledPerson>& b) {
   const auto fields_of = [](const ScheduledPerson& scheduled) {
-    const auto& [part, role, seat, person] = scheduled;
-    return std::tie(part, role, seat);
+    const auto& [part, role, seat, person, room] = scheduled;
+    return std::tie(part, role, seat, room);
   };
   return a && b ? fields_of(*a) == fields_of(*b) : a.has_value() == b.has_value();
 }

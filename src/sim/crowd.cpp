@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "schema/phase_names.hpp"
@@ -21,7 +22,9 @@ std::optional<std::uint32_t> Conversation::speaker(std::span<const std::uint32_t
   return speaker_;
 }
 
-Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run), doors_(study, run) {
+Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : doors_(study, run) {
+  const auto n_conversations = static_cast<std::uint32_t>(std::max<std::size_t>(1, study.areas().size()));
+  for (std::uint32_t i = 0; i < n_conversations; ++i) conversations_.emplace_back(study.seed(), run, i);
   const std::size_t n_people = study.trial_of(run).people.size();
   std::shared_ptr<const DayPlan> plan;
   const TrialModel& trial = study.trial_of(run);
@@ -56,18 +59,25 @@ std::size_t Crowd::pass_on_others(std::size_t i, std::size_t n_before) {
   return n_before + (comes ? 1 : 0);
 }
 
-/// Who takes part in a meeting looks at whoever speaks.
+/// Who takes part in a meeting looks at whoever speaks in their area.
 void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
   participants_.clear();
   for (std::uint32_t i = 0; i < actors_.size(); ++i) {
     if (actors_[i].takes_part_in_meeting()) participants_.push_back(i);
   }
-  if (participants_.empty()) return;
-  const auto speaker = conversation_.speaker(participants_, tick, study.sensing().tick_rate_hz);
-  for (const std::uint32_t i : participants_) {
-    std::optional<Vec2> place;
-    if (speaker) place = actors_[*speaker].motion().position();
-    actors_[i].attend(i == speaker ? Talk::speaks : speaker ? Talk::listens : Talk::none, place);
+  const Areas& areas = study.areas();
+  for (std::size_t area = 0; area < conversations_.size() && !participants_.empty(); ++area) {
+    together_.clear();
+    std::ranges::copy_if(participants_, std::back_inserter(together_), [&](std::uint32_t i) {
+      return areas.empty() || areas.at(actors_[i].motion().position()) == area;
+    });
+    if (together_.empty()) continue;
+    const auto speaker = conversations_[area].speaker(together_, tick, study.sensing().tick_rate_hz);
+    for (const std::uint32_t i : together_) {
+      std::optional<Vec2> place;
+      if (speaker) place = actors_[*speaker].motion().position();
+      actors_[i].attend(i == speaker ? Talk::speaks : speaker ? Talk::listens : Talk::none, place);
+    }
   }
 }
 

@@ -16,7 +16,9 @@ namespace pirsim::sim {
 /// Turns of speech among whoever takes part. A value; draws from a stream of its own.
 class Conversation {
  public:
-  Conversation(std::uint64_t seed, std::uint32_t run) : stream_({seed, run, 0, Purpose::conversation}) {}
+  /// number: which of the conversations of a run.
+  Conversation(std::uint64_t seed, std::uint32_t run, std::uint32_t number)
+      : stream_({seed, run, number, Purpose::conversation}) {}
 
   /// Of these people, who speaks at this tick; nobody where fewer than two are. participants: ascending.
   [[nodiscard]] std::optional<std::uint32_t> speaker(std::span<const std::uint32_t> participants, std::int64_t tick,
@@ -63,11 +65,12 @@ class Crowd {
   std::vector<std::optional<Presence>> presences_;  ///< (n_actors) as they are now; of those in the scene
   std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
-  Conversation conversation_;
+  std::vector<Conversation> conversations_;         ///< one of each area, one in a scene without areas
   Doors doors_;
   std::vector<std::optional<Vec2>> places_;  ///< (n_actors) at the last tick, in scenes with doors
   std::vector<Presence> others_;             ///< scratch
   std::vector<std::uint32_t> participants_;  ///< scratch
+  std::vector<std::uint32_t> together_;      ///< scratch
   std::vector<DoorUser> door_users_;         ///< scratch
 };
 

@@ -5,28 +5,12 @@
 #include <numeric>
 
 #include "schema/clock.hpp"
+#include "sim/meeting_draw.hpp"
 
 namespace pirsim::sim {
 namespace {
 
 constexpr double day_s = 24.0 * hour_s;
-
-/// Index drawn with these weights.
-std::size_t pick(Stream& stream, std::span<const double> weights) {
-  double left = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] <= 0.0) continue;
-    last = i;
-    if ((left -= weights[i]) < 0.0) break;
-  }
-  return last;
-}
-
-void shuffle(Stream& stream, std::vector<std::size_t>& list) {
-  for (std::size_t i = list.size(); i > 1; --i)
-    std::swap(list[i - 1], list[stream.index(static_cast<std::uint32_t>(i))]);
-}
 
 double stay_s(Stream& stream, double mean_s) {
   const double least_s = std::min(shortest_stay_s, mean_s);
@@ -43,7 +27,7 @@ double rest_of_stay_s(Stream& stream, double mean_s) {
 /// One person's moves between places, as found going on at any moment: shares of time hold from the first second.
 class Moves {
  public:
-  explicit Moves(Role role) : habits_(habits_of(role)) {
+  explicit Moves(const Habits& habits) : habits_(habits) {
     for (std::size_t i = 0; i < n_places; ++i) stays_s_[i] = habits_.stays_min[i] * minute_s;
     rates_ = markov_rates(habits_.shares, stays_s_);
   }
@@ -65,13 +49,25 @@ class Moves {
   std::vector<double> rates_;
 };
 
+/// Who is called to meetings of the schedule goes to no others.
+Habits habits_in(const ScheduleSpec& schedule, Role role) {
+  Habits habits = habits_of(role);
+  if (std::ranges::find(schedule.meetings, Attendees::staff, &MeetingsSpec::attendees) == schedule.meetings.end())
+    return habits;
+  double& met = habits.shares[static_cast<std::size_t>(Place::meeting)];
+  const double others = 1.0 - met;
+  met = 0.0;
+  for (double& share : habits.shares) share /= others;
+  return habits;
+}
+
 std::vector<Stay> draw_agent(const ScheduleSpec& schedule, Role role, Stream& stream) {
   const double arrival = std::max(0.0, around(stream, schedule.arrival));
   const double departure = std::clamp(around(stream, schedule.departure), arrival, day_s - minute_s);
   const double lunch = around(stream, schedule.lunch);
   const double lunch_s = minute_s * std::max(0.0, schedule.lunch_min + schedule.lunch_sd_min * cut_normal(stream));
   std::vector<Stay> stays;
-  const Moves moves(role);
+  const Moves moves(habits_in(schedule, role));
   if (lunch_s > 0.0 && lunch > arrival && lunch + lunch_s < departure) {
     moves.spend(arrival, lunch, stream, stays);
     stays.push_back({Place::lunch, lunch, lunch + lunch_s});
@@ -123,88 +119,6 @@ void find_hosts(const DaySource& source, DayDraw& draw) {
   }
 }
 
-struct Slot {
-  double begin_s, end_s;
-  int people;
-};
-
-std::vector<Slot> held_slots(const MeetingsSpec& spec) {
-  std::vector<Slot> slots;
-  for (const HeldMeetingSpec& held : spec.held) {
-    slots.push_back({held.at_h * hour_s, held.at_h * hour_s + held.duration_min * minute_s, held.people});
-  }
-  std::ranges::sort(slots, {}, &Slot::begin_s);
-  return slots;
-}
-
-/// Number and lengths first, then where they lie among the free quarters of an hour, all ways equally likely: so their
-/// lengths are as asked for. The last ones drawn are left out if all together are longer than the day.
-std::vector<Slot> drawn_slots(const MeetingsSpec& spec, int most_people, Stream& stream) {
-  constexpr double quarter_s = 15.0 * minute_s;
-  const auto range = [&](int low, int high) {
-    return low + static_cast<int>(stream.index(static_cast<std::uint32_t>(std::max(0, high - low) + 1)));
-  };
-  const auto all = static_cast<std::int64_t>((spec.to_h - spec.from_h) * hour_s / quarter_s + 1e-9);
-  std::int64_t used = 0;
-  std::vector<double> lengths;
-  for (int left = range(spec.fewest_a_day, spec.most_a_day); left > 0; --left) {
-    const double length_s = spec.durations_min[pick(stream, spec.probabilities)] * minute_s;
-    const auto quarters = static_cast<std::int64_t>(std::ceil(length_s / quarter_s - 1e-9));
-    if (used + quarters > all) break;
-    used += quarters;
-    lengths.push_back(length_s);
-  }
-  // The free quarters before each of n meetings: n of (free + n) places, none taken twice.
-  std::vector<std::size_t> places(static_cast<std::size_t>(all - used) + lengths.size());
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  shuffle(stream, places);
-  places.resize(lengths.size());
-  std::ranges::sort(places);
-  std::vector<Slot> slots;
-  double before_s = 0.0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    const double begin_s = spec.from_h * hour_s + static_cast<double>(places[i] - i) * quarter_s + before_s;
-    slots.push_back({begin_s, begin_s + lengths[i], range(spec.fewest_people, most_people)});
-    before_s += std::ceil(lengths[i] / quarter_s - 1e-9) * quarter_s;
-  }
-  return slots;
-}
-
-Attendance attend(const Slot& slot, double lateness_s, Stream& stream) {
-  constexpr double punctual_s = 3.0 * minute_s;  // assumed (0-5 min): the first come so long before
-  constexpr double leaves_early = 0.1;           // assumed (0-0.2)
-  const double length_s = slot.end_s - slot.begin_s;
-  Attendance person;
-  const double late_s = exponential(stream, lateness_s + punctual_s) - punctual_s;
-  person.comes_s = slot.begin_s + std::min(late_s, 0.5 * length_s);
-  const double share = stream.uniform(), within = stream.uniform();
-  person.goes_s =
-      share < leaves_early ? slot.begin_s + (0.6 + 0.3 * within) * length_s : slot.end_s + minute_s * within;
-  return person;
-}
-
-std::vector<Meeting> draw_meetings(const MeetingsSpec& spec, const std::vector<std::size_t>& guests, Stream& stream) {
-  constexpr double presented = 0.5;  // assumed (0.3-0.7): share of meetings in which somebody stands at the screen
-  const int most = static_cast<int>(guests.size());
-  std::vector<Meeting> meetings;
-  for (const Slot& slot : spec.held.empty() ? drawn_slots(spec, most, stream) : held_slots(spec)) {
-    std::vector<std::size_t> who = guests;
-    shuffle(stream, who);
-    who.resize(static_cast<std::size_t>(std::min(slot.people, most)));
-    Meeting& meeting = meetings.emplace_back(Meeting{slot.begin_s, slot.end_s, {}});
-    for (const std::size_t person : who) {
-      meeting.people.push_back(attend(slot, spec.lateness_min * minute_s, stream));
-      meeting.people.back().person = person;
-    }
-    const double shown = stream.uniform(), share = stream.uniform();
-    if (shown >= presented || who.size() < 2) continue;
-    Attendance& speaker = *std::ranges::min_element(meeting.people, {}, &Attendance::comes_s);
-    speaker.goes_s = std::max(speaker.goes_s, slot.end_s);
-    speaker.presents_until_s = slot.begin_s + (0.3 + 0.4 * share) * (slot.end_s - slot.begin_s);
-  }
-  return meetings;
-}
-
 }  // namespace
 
 Habits habits_of(Role role) {
@@ -218,6 +132,17 @@ Habits habits_of(Role role) {
       return {{0.70, 0.15, 0.05, 0.10}, stays_min};
   }
   return {};
+}
+
+std::size_t pick(Stream& stream, std::span<const double> weights) {
+  double left = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0.0) continue;
+    last = i;
+    if ((left -= weights[i]) < 0.0) break;
+  }
+  return last;
 }
 
 double cut_normal(Stream& stream) { return std::clamp(stream.normal(), -3.0, 3.0); }
@@ -241,23 +166,18 @@ DayDraw draw_times(const DaySource& source) {
   DayDraw draw;
   draw.stays.resize(source.people.size());
   if (!is_working_day(source.day)) return draw;
-  std::vector<std::size_t> guests;
   for (std::size_t i = 0; i < source.people.size(); ++i) {
-    if (source.people[i] == SchedulePart::guest) guests.push_back(i);
-    if (source.people[i] == SchedulePart::cleaner) {
-      Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
-      draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
-    }
-    if (source.people[i] != SchedulePart::staff) continue;
+    const auto& person = source.people[i];
+    if (!person) continue;
     Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
+    if (person->part == SchedulePart::cleaner)
+      draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
+    if (person->part != SchedulePart::staff) continue;
     draw.stays[i] = source.schedule.profile ? draw_presence(*source.schedule.profile, stream)
-                                            : draw_agent(source.schedule, source.roles[i], stream);
+                                            : draw_agent(source.schedule, person->role, stream);
   }
+  draw_meetings(source, draw);
   find_hosts(source, draw);
-  if (source.schedule.meetings && !guests.empty()) {
-    Stream stream({source.seed, source.run, 0, Purpose::schedule_meetings});
-    draw.meetings = draw_meetings(*source.schedule.meetings, guests, stream);
-  }
   return draw;
 }
 

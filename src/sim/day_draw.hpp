@@ -14,6 +14,8 @@ namespace pirsim::sim {
 
 inline constexpr double minute_s = 60.0, hour_s = 3600.0;
 
+/// Index drawn with these weights.
+[[nodiscard]] std::size_t pick(Stream& stream, std::span<const double> weights);
 [[nodiscard]] double cut_normal(Stream& stream);                      ///< standard, cut at three
 [[nodiscard]] double around(Stream& stream, const ClockSpec& clock);  ///< seconds of the day
 [[nodiscard]] double exponential(Stream& stream, double mean);
@@ -28,6 +30,7 @@ struct Stay {
   double from_s = 0.0, to_s = 0.0;
   /// Whose desk, as an index into the day's people; none: somewhere else in the building.
   std::optional<std::size_t> host{};
+  std::optional<std::size_t> meeting{};  ///< an index into the day's; none: they meet somewhere else
 };
 
 struct Attendance {
@@ -37,6 +40,7 @@ struct Attendance {
 };
 
 struct Meeting {
+  std::size_t room = 0;  ///< index into the schedule's meetings
   double begin_s = 0.0, end_s = 0.0;
   std::vector<Attendance> people;
 };
@@ -44,15 +48,21 @@ struct Meeting {
 /// All of it empty on days off.
 struct DayDraw {
   std::vector<std::vector<Stay>> stays;  ///< (n_people) empty for who isn't staff
-  std::vector<Meeting> meetings;         ///< in the simulated room, in order of time
+  std::vector<Meeting> meetings;         ///< of guests, room by room, then of the staff; each in order of time
   std::optional<double> cleaning_s;
 };
 
-/// What a day is drawn from. people: those of the trial; none for who is no part of the schedule.
+struct DayPerson {
+  SchedulePart part = SchedulePart::staff;
+  Role role = Role::staff;  ///< of staff
+  std::size_t room = 0;     ///< of guests
+};
+
+/// What a day is drawn from.
 struct DaySource {
   const ScheduleSpec& schedule;
-  std::span<const std::optional<SchedulePart>> people;
-  std::span<const Role> roles;
+  std::span<const std::optional<DayPerson>> people;  ///< of the trial; none for who is no part of the schedule
+  std::span<const int> most_at_meeting;              ///< (n_rooms) of each of the schedule's meetings
   std::uint64_t seed = 1;
   std::uint32_t run = 0;
   std::int64_t day = 0;

@@ -26,16 +26,17 @@ class Day {
     }
   }
 
-  DayPlan plan() const {
+  DayPlan plan() {
     const DayDraw draw = draw_times(study_, run_);
+    take_seats(draw.meetings);
     DayPlan plan;
     for (std::size_t i = 0; i < trial_.people.size(); ++i) {
       const auto& part = trial_.people[i].spec.part;
       plan.push_back(part ? std::vector<ScriptedAction>{} : trial_.people[i].spec.actions);
-      if (part && part->part == SchedulePart::staff) plan[i] = attend_work(i, draw.stays[i]);
+      if (part && part->part == SchedulePart::staff) plan[i] = attend_work(i, draw);
       if (part && part->part == SchedulePart::cleaner && draw.cleaning_s) plan[i] = clean(i, *draw.cleaning_s);
     }
-    hold(draw.meetings, plan);
+    bring_guests(draw.meetings, plan);
     return plan;
   }
 
@@ -58,7 +59,8 @@ class Day {
     return schedule_.from_h > 0.0 ? schedule_.from_h * hour_s + minute_s * stream.uniform() : 0.0;
   }
 
-  std::vector<ScriptedAction> attend_work(std::size_t person, const std::vector<Stay>& stays) const {
+  std::vector<ScriptedAction> attend_work(std::size_t person, const DayDraw& draw) const {
+    const std::vector<Stay>& stays = draw.stays[person];
     Stream stream = stream_of(person);
     const double begin_s = first_s(stream);
     ActionLine line(schedule_);
@@ -69,6 +71,8 @@ class Day {
         be_at_desk(line, from_s, stay.to_s, person, stream);
       } else if (stay.place == Place::others_desk && stay.host) {
         visit(line, from_s, person, *stay.host, stream);
+      } else if (stay.meeting) {
+        take_part(line, draw.meetings[*stay.meeting], seats_of_[*stay.meeting], person, begin_s);
       } else {
         go(line, from_s, person);
       }
@@ -148,43 +152,68 @@ class Day {
     return line.take();
   }
 
-  void hold(const std::vector<Meeting>& meetings, DayPlan& plan) const {
-    if (meetings.empty()) return;
-    const std::vector<std::string> seats = meeting_seats(*schedule_.meetings, study_.scene(), *trial_.schedule);
-    std::vector<ActionLine> lines(plan.size(), ActionLine(schedule_));
-    Stream stream = stream_of(n_scheduled_);
-    const double begin_s = first_s(stream);
-    for (const Meeting& meeting : meetings) {
-      std::vector<std::string> free = seats;
-      for (const Attendance& who : meeting.people) {
-        const std::size_t k = stream.index(static_cast<std::uint32_t>(free.size()));
-        if (who.goes_s > begin_s) take_part(lines[who.person], meeting, who, free[k], begin_s, seats);
-        free.erase(free.begin() + static_cast<std::ptrdiff_t>(k));
+  /// Of each meeting: the seats of who comes, and all of its room.
+  struct MeetingSeats {
+    std::vector<std::string> of_people, of_room;
+  };
+
+  void take_seats(const std::vector<Meeting>& meetings) {
+    for (std::size_t room = 0; room < schedule_.meetings.size(); ++room) {
+      const std::vector<std::string> seats = meeting_seats(*trial_.schedule, room, study_.scene());
+      Stream stream = stream_of(n_scheduled_ + room);
+      begins_s_.push_back(first_s(stream));
+      seats_of_.resize(meetings.size());
+      for (std::size_t i = 0; i < meetings.size(); ++i) {
+        if (meetings[i].room != room) continue;
+        seats_of_[i].of_room = seats;
+        std::vector<std::string> free = seats;
+        for (std::size_t n = meetings[i].people.size(); n > 0; --n) {
+          const std::size_t k = stream.index(static_cast<std::uint32_t>(free.size()));
+          seats_of_[i].of_people.push_back(free[k]);
+          free.erase(free.begin() + static_cast<std::ptrdiff_t>(k));
+        }
       }
-    }
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-      const auto& part = trial_.people[i].spec.part;
-      if (part && part->part == SchedulePart::guest) plan[i] = lines[i].take();
     }
   }
 
-  void take_part(ActionLine& line, const Meeting& meeting, const Attendance& who, const std::string& seat,
-                 double begin_s, const std::vector<std::string>& seats) const {
-    const PersonModel& person = trial_.people[who.person];
+  void bring_guests(const std::vector<Meeting>& meetings, DayPlan& plan) const {
+    std::vector<ActionLine> lines(plan.size(), ActionLine(schedule_));
+    for (std::size_t i = 0; i < meetings.size(); ++i) {
+      const double begin_s = begins_s_[meetings[i].room];
+      for (const Attendance& who : meetings[i].people) {
+        if (!is_guest(who.person) || who.goes_s <= begin_s) continue;
+        take_part(lines[who.person], meetings[i], seats_of_[i], who.person, begin_s);
+        go(lines[who.person], who.goes_s, who.person);
+      }
+    }
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+      if (is_guest(i)) plan[i] = lines[i].take();
+    }
+  }
+  [[nodiscard]] bool is_guest(std::size_t person) const {
+    const auto& part = trial_.people[person].spec.part;
+    return part && part->part == SchedulePart::guest;
+  }
+
+  void take_part(ActionLine& line, const Meeting& meeting, const MeetingSeats& seats, std::size_t who,
+                 double begin_s) const {
+    const auto at = static_cast<std::size_t>(std::ranges::find(meeting.people, who, &Attendance::person) -
+                                             meeting.people.begin());
+    const Attendance& attendance = meeting.people[at];
+    const PersonModel& person = trial_.people[who];
     action::Work listen;
     listen.duration_s = until_next_s;
     listen.activity = Activity::meeting;
-    action::Sit sit{person.can_use(seat) ? seat : person.seats.begin()->first};
+    action::Sit sit{person.can_use(seats.of_people[at]) ? seats.of_people[at] : person.seats.begin()->first};
     sit.if_taken = action::IfTaken::other_seat;
-    come(line, std::max(who.comes_s, begin_s), who.person);
+    come(line, std::max(attendance.comes_s, begin_s), who);
     line.then(sit);
     line.then(listen);
-    if (who.presents_until_s && *who.presents_until_s > begin_s) {
-      present(line, std::max({meeting.begin_s, who.comes_s + minute_s, begin_s}), who.person, seats);
-      line.at(*who.presents_until_s, sit);
+    if (attendance.presents_until_s && *attendance.presents_until_s > begin_s) {
+      present(line, std::max({meeting.begin_s, attendance.comes_s + minute_s, begin_s}), who, seats.of_room);
+      line.at(*attendance.presents_until_s, sit);
       line.then(listen);
     }
-    go(line, who.goes_s, who.person);
   }
 
   void present(ActionLine& line, double at_s, std::size_t person, const std::vector<std::string>& seats) const {
@@ -206,6 +235,8 @@ class Day {
   std::uint32_t run_;
   std::size_t n_scheduled_ = 0;  ///< people; those that effects add come after them
   std::vector<std::string> doors_;
+  std::vector<double> begins_s_;        ///< (n_rooms) before which nobody meets there
+  std::vector<MeetingSeats> seats_of_;  ///< (n_meetings)
 };
 
 }  // namespace
@@ -214,14 +245,15 @@ std::int64_t day_of(const CompiledStudy& study, std::uint32_t run) { return stud
 
 DayDraw draw_times(const CompiledStudy& study, std::uint32_t run) {
   const TrialModel& trial = study.trial_of(run);
-  std::vector<std::optional<SchedulePart>> parts;
-  std::vector<Role> roles;
+  std::vector<std::optional<DayPerson>> people;
   for (const PersonModel& person : trial.people) {
     const auto& part = person.spec.part;
-    parts.push_back(part ? std::optional(part->part) : std::nullopt);
-    roles.push_back(part ? part->role : Role::staff);
+    people.push_back(part ? std::optional(DayPerson{part->part, part->role, part->room}) : std::nullopt);
   }
-  return draw_times(DaySource{*trial.schedule, parts, roles, study.seed(), run, day_of(study, run)});
+  std::vector<int> most_at_meeting;
+  for (std::size_t room = 0; room < trial.schedule->meetings.size(); ++room)
+    most_at_meeting.push_back(pirsim::most_at_meeting(*trial.schedule, room, study.scene()));
+  return draw_times(DaySource{*trial.schedule, people, most_at_meeting, study.seed(), run, day_of(study, run)});
 }
 
 DayPlan draw_day(const CompiledStudy& study, std::uint32_t run) {

@@ -19,7 +19,7 @@ struct Visit {
 };
 
 bool is_in_room(const sim::Stay& stay) {
-  return stay.place == sim::Place::desk || (stay.place == sim::Place::others_desk && stay.host);
+  return stay.place == sim::Place::desk || (stay.place == sim::Place::others_desk && stay.host) || stay.meeting;
 }
 
 std::vector<Visit> visits_of(const sim::DayDraw& draw) {
@@ -105,7 +105,8 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
       if (!draw.stays[staff[i]].empty()) seats.insert(result.staff[i].seat);
     }
     for (const sim::Meeting& meeting : draw.meetings) {
-      result.meetings.push_back({day, meeting.begin_s, meeting.end_s, meeting.people.size()});
+      result.meetings.push_back(
+          {day, meeting.begin_s, meeting.end_s, meeting.people.size(), model.schedule->meetings[meeting.room].area});
     }
     if (draw.cleaning_s) cleaning_s += *draw.cleaning_s, ++cleanings;
     note_most(result, draw, day);
@@ -115,10 +116,11 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
     person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
   }
   if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
-  if (!result.meetings.empty()) {
-    for (const std::string& seat : meeting_seats(*model.schedule->meetings, study.scene(), *model.schedule)) {
-      seats.insert(seat);
-    }
+  std::ranges::stable_sort(result.meetings, {}, [](const ExpectedMeeting& meeting) {
+    return std::pair(meeting.day, meeting.begin_s);
+  });
+  for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
+    for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
   }
   for (const SeatSpec& seat : study.scene().seats) {
     if (seats.contains(seat.id)) result.seats.push_back(seat.id);
@@ -135,11 +137,11 @@ void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::Compile
       << clock(3600.0 * schedule.from_h) << " to " << clock(3600.0 * schedule.to_h)
       << "; times as drawn for whole days, before anybody has walked\n";
   for (const ExpectedPerson& person : outlook.staff) print_person(out, person);
-  if (schedule.meetings) out << "  meetings: " << outlook.meetings.size() << '\n';
+  if (!schedule.meetings.empty()) out << "  meetings: " << outlook.meetings.size() << '\n';
   for (std::size_t i = 0; i < std::min(most_told, outlook.meetings.size()); ++i) {
     const ExpectedMeeting& meeting = outlook.meetings[i];
     out << "    " << clock_text(meeting.day, meeting.begin_s).substr(0, 16) << '-' << clock(meeting.end_s) << ", "
-        << meeting.people << " people\n";
+        << meeting.people << " people" << (meeting.area.empty() ? "" : " in " + meeting.area) << '\n';
   }
   if (outlook.meetings.size() > most_told) out << "    and so on\n";
   if (outlook.mean_cleaning_s) out << "  cleaning about " << clock(*outlook.mean_cleaning_s) << " on working days\n";

@@ -24,6 +24,7 @@ struct ExpectedMeeting {
   std::int64_t day = 0;
   double begin_s = 0.0, end_s = 0.0;
   std::size_t people = 0;
+  std::string area;  ///< or no text
 };
 
 /// Of one trial's days, or its first ones.

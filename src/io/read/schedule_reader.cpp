@@ -44,6 +44,7 @@ MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "meetings");
   MeetingsSpec spec;
   spec.where = node.where();
+  spec.area = map.text("area");
   read_fields(map, spec);
   if (!map.has("most_a_day")) spec.most_a_day = std::max(spec.most_a_day, spec.fewest_a_day);
   for (const YamlNode& held : map.list("held", limits::held_meetings)) spec.held.push_back(read_held(held, faults));
@@ -91,7 +92,11 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   spec.first_day = map.text("first_day", spec.first_day);
   read_fields(map, spec);
   for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
-  if (const auto child = map.child("meetings")) spec.meetings = read_meetings(*child, faults);
+  if (const auto child = map.child("meetings")) {
+    const std::vector<YamlNode> rooms =
+        child->is_map() ? std::vector{*child} : map.list("meetings", limits::list_entries);
+    for (const YamlNode& room : rooms) spec.meetings.push_back(read_meetings(room, faults));
+  }
   if (map.child("profile")) {
     ProfileSpec& profile = spec.profile.emplace();
     read_part(map, "profile", profile, [&](YamlMap& own) { check_together(profile, faults_by_key(own)); });

@@ -1,7 +1,9 @@
 // People counted by area: the counts sum to all people, and say where each of them is.
+#include <algorithm>
 #include <map>
 #include <random>
 
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -99,4 +101,32 @@ TEST_CASE("areas change nothing but the columns of their own", "[areas]") {
   RunResult a = run_once(with, 1), b = run_once(without, 1);
   for (Sample& row : a.samples) row.people_of_areas.clear();
   CHECK(a.samples == b.samples);
+}
+
+namespace {
+
+/// What the first sensor sees of a meeting on foot of two in the living room, while others meet at these places.
+std::vector<std::uint8_t> seen_of_meeting(const std::vector<std::string>& others) {
+  std::string people;
+  std::vector<std::string> places{"[1.2, -3.2]", "[1.2, -2.4]"};
+  places.insert(places.end(), others.begin(), others.end());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    people += "  - {id: p" + std::to_string(i) + ", style: natural, actions: [{appear: {at_xz_m: " + places[i] +
+              ", heading_deg: 180}}, {wait: {duration_s: 600, activity: meeting}}]}\n";
+  }
+  const std::string script = "pirsim_script: 1\nseed: 5\nduration_s: 600\nsensing: {response: zones}\npeople:\n";
+  const RunResult result =
+      run_once(compile(shipped_scene("two_rooms.gltf"), io::parse_script(script + people, "meeting.yaml")), 0);
+  std::vector<std::uint8_t> bits;
+  for (const Sample& row : result.samples) bits.push_back(row.bits[0]);
+  return bits;
+}
+
+}  // namespace
+
+TEST_CASE("who meets in one area talks among themselves, whoever meets in another", "[areas]") {
+  const auto alone = seen_of_meeting({});
+  CHECK(std::ranges::count(alone, 1) > 20);
+  CHECK(seen_of_meeting({"[6.0, -0.8]", "[7.0, -0.8]"}) == alone);
+  CHECK(seen_of_meeting({"[3.0, -0.8]", "[3.6, -0.8]"}) != alone);  // in the same room
 }

@@ -118,9 +118,9 @@ ScriptSpec plain_schedule() {
   ScriptSpec script = script_of({});
   ScheduleSpec schedule;
   schedule.staff = {StaffSpec{}};
-  schedule.meetings = MeetingsSpec{};
-  schedule.meetings->most_people = 4;
-  schedule.meetings->held = {HeldMeetingSpec{}};
+  schedule.meetings.emplace_back();
+  schedule.meetings[0].most_people = 4;
+  schedule.meetings[0].held = {HeldMeetingSpec{}};
   schedule.profile = ProfileSpec{std::vector<double>(24, 0.5)};
   schedule.cleaning_h = 19.0;
   script.trials.front().schedule = schedule;
@@ -232,8 +232,8 @@ TEST_CASE("a number out of its range is refused by file and by object", "[both-w
   n += schedule_numbers<ScheduleSpec>([](ScheduleSpec& s) -> ScheduleSpec& { return s; });
   n += schedule_numbers<ClockSpec>([](ScheduleSpec& s) -> ClockSpec& { return s.lunch; });
   n += schedule_numbers<StaffSpec>([](ScheduleSpec& s) -> StaffSpec& { return s.staff.front(); });
-  n += schedule_numbers<MeetingsSpec>([](ScheduleSpec& s) -> MeetingsSpec& { return *s.meetings; });
-  n += schedule_numbers<HeldMeetingSpec>([](ScheduleSpec& s) -> HeldMeetingSpec& { return s.meetings->held.front(); });
+  n += schedule_numbers<MeetingsSpec>([](ScheduleSpec& s) -> MeetingsSpec& { return s.meetings[0]; });
+  n += schedule_numbers<HeldMeetingSpec>([](ScheduleSpec& s) -> HeldMeetingSpec& { return s.meetings[0].held.front(); });
   n += schedule_numbers<ProfileSpec>([](ScheduleSpec& s) -> ProfileSpec& { return *s.profile; });
   n += sensor_numbers<SensorModelSpec>([](SensorModelSpec& m) -> SensorModelSpec& { return m; });
   n += sensor_numbers<ClusterSpec>([](SensorModelSpec& m) -> ClusterSpec& { return m.clusters.front(); });
@@ -298,12 +298,12 @@ TEST_CASE("what else a script can't be is refused by file and by object", "[both
   schedule("cleaning_h", [](ScheduleSpec& s) { s.cleaning_h = 24.5; });
   schedule("staff", [](ScheduleSpec& s) { s = ScheduleSpec{}; });
   schedule("profile.presence", [](ScheduleSpec& s) { s.profile->presence.pop_back(); });
-  schedule("meetings.probabilities", [](ScheduleSpec& s) { s.meetings->probabilities.pop_back(); });
-  schedule("meetings.probabilities", [](ScheduleSpec& s) { s.meetings->probabilities.assign(4, 0.0); });
-  schedule("meetings.to_h", [](ScheduleSpec& s) { s.meetings->to_h = s.meetings->from_h; });
-  schedule("meetings.held[0].at_h", [](ScheduleSpec& s) { s.meetings->held.front().at_h = -1.0; });
-  schedule("meetings.held[0].duration_min", [](ScheduleSpec& s) { s.meetings->held.front().at_h = 23.5; });
-  schedule("meetings.held[1]", [](ScheduleSpec& s) { s.meetings->held.push_back(s.meetings->held.front()); });
+  schedule("meetings[0].probabilities", [](ScheduleSpec& s) { s.meetings[0].probabilities.pop_back(); });
+  schedule("meetings[0].probabilities", [](ScheduleSpec& s) { s.meetings[0].probabilities.assign(4, 0.0); });
+  schedule("meetings[0].to_h", [](ScheduleSpec& s) { s.meetings[0].to_h = s.meetings[0].from_h; });
+  schedule("meetings[0].held[0].at_h", [](ScheduleSpec& s) { s.meetings[0].held.front().at_h = -1.0; });
+  schedule("meetings[0].held[0].duration_min", [](ScheduleSpec& s) { s.meetings[0].held.front().at_h = 23.5; });
+  schedule("meetings[0].held[1]", [](ScheduleSpec& s) { s.meetings[0].held.push_back(s.meetings[0].held.front()); });
   wrong(plain_schedule(), "script.trials[0].duration_s", [](ScriptSpec& s) { s.trials.front().duration_s = 60.0; });
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("A schedule is read, written and read again to the same") {
   CHECK(schedule.arrival.mean_h == 9.25);
   CHECK(schedule.staff[0].role == Role::manager);
   CHECK(schedule.staff[1].count == 3);
-  CHECK(schedule.meetings->held[0].duration_min == 45.0);
+  CHECK(schedule.meetings[0].held[0].duration_min == 45.0);
   const std::string text = io::to_yaml(script);
   CHECK(io::to_yaml(io::parse_script(text, "again.yaml")) == text);
   CHECK_THAT(text, contains("first_day: 2026-05-04"));
@@ -84,12 +84,71 @@ TEST_CASE("Meetings take the seats that are nobody's desk") {
   const ScriptSpec script = script_with("  staff: [{seats: [S2]}, {count: 2}]\n  meetings: {}\n");
   const ScheduleSpec& schedule = *script.trials.front().schedule;
   const SceneSpec scene = scene_with(6);
-  CHECK(meeting_seats(*schedule.meetings, scene, schedule) == std::vector<std::string>{"S4", "S5", "S6"});
+  CHECK(meeting_seats(schedule, 0, scene) == std::vector<std::string>{"S4", "S5", "S6"});
   const auto people = people_of(schedule, scene, 1);
   REQUIRE(people.size() == 6);
   CHECK(people[0].seat == "S2");
   CHECK(people[2].seat == "S3");
   CHECK(people[5].part == SchedulePart::guest);
+}
+
+namespace {
+
+/// Seats 1 m apart along x, all but the first two in an area; `desk` and `sofa` are for something.
+SceneSpec floor_with_meeting_room() {
+  SceneSpec scene = scene_with(8);
+  for (std::size_t i = 0; i < scene.seats.size(); ++i) scene.seats[i].world_from_seat.origin = {double(i), 0.5, 0.0};
+  scene.seats[1].uses = {"toilet"};
+  scene.seats[7].uses = {"work"};
+  scene.areas.push_back({"meet", FloorArea({{{3.5, 1.0}, {7.5, 1.0}, {7.5, -1.0}, {3.5, -1.0}}}, 0.0)});
+  return scene;
+}
+
+std::vector<std::string> faults_on_floor(const std::string& schedule) {
+  const ScriptSpec script = script_with(schedule);
+  try {
+    static_cast<void>(people_of(*script.trials.front().schedule, floor_with_meeting_room(), 1));
+  } catch (const Error& error) {
+    std::vector<std::string> messages;
+    for (const Issue& issue : error.issues()) messages.push_back(issue.message);
+    return messages;
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("Rooms for meetings are told apart by area or by seats, and are nobody's desk") {
+  const ScriptSpec script = script_with(
+      "  staff: [{count: 3}]\n  meetings:\n    - {area: meet, attendees: staff}\n    - {seats: [S4]}\n");
+  const ScheduleSpec& schedule = *script.trials.front().schedule;
+  CHECK(schedule.meetings[0].attendees == Attendees::staff);
+  const std::string text = io::to_yaml(script);
+  CHECK(io::to_yaml(io::parse_script(text, "again.yaml")) == text);
+  const SceneSpec scene = floor_with_meeting_room();
+  CHECK(meeting_seats(schedule, 0, scene) == std::vector<std::string>{"S5", "S6", "S7"});  // S8 is for work
+  CHECK(most_at_meeting(schedule, 0, scene) == 3);
+  const ScheduleSpec two_desks = *script_with("  staff: [{count: 2}]\n  meetings: {area: meet}\n").trials[0].schedule;
+  const auto people = people_of(two_desks, scene, 1);
+  CHECK(people[0].seat == "S1");
+  CHECK(people[1].seat == "S3");  // not the second, which is a toilet's
+  CHECK(people.size() == 2 + 3);
+}
+
+TEST_CASE("Rooms for meetings that a scene can't hold are refused") {
+  const auto one = [](const std::string& schedule, const std::string& message) {
+    INFO(schedule);
+    const std::vector<std::string> faults = faults_on_floor(schedule);
+    REQUIRE(faults.size() == 1);
+    CHECK_THAT(faults.front(), contains(message));
+  };
+  one("  meetings: {area: met}\n", "area 'met' is not in room (did you mean 'meet'?)");
+  one("  staff: [{count: 1}]\n  meetings: [{attendees: staff}]\n", "2 people, and 1 of the staff");
+  one("  meetings: [{seats: [S1, S3]}, {seats: [S3, S4]}]\n", "seat 'S3' is another room's too");
+  one("  meetings: [{}, {}]\n", "is another room's too: say the `area` or the `seats` of each");
+  one("  staff: [{count: 4}]\n  meetings: {area: meet}\n", "more staff than the 3 seats");
+  refused("  meetings: [{held: [{at: 10:00, duration_min: 60}, {at: 10:30, duration_min: 60}]}]\n", "held: overlaps");
+  refused("  meetings: [{attendees: stuff}]\n", "(did you mean 'staff'?)");
 }
 
 namespace {

@@ -20,20 +20,16 @@ constexpr std::int64_t monday = 20514;  // 2026-03-02
 constexpr std::uint32_t n_days = 200;
 constexpr double z_limit = 3.29, ks_limit = 1.95;  // two-sided 0.001; of D sqrt(n) for large n
 
-struct People {
-  std::vector<std::optional<SchedulePart>> parts;
-  std::vector<Role> roles;
-};
+using People = std::vector<std::optional<DayPerson>>;
 
-People people(SchedulePart part, std::size_t n, Role role = Role::staff) {
-  return {std::vector<std::optional<SchedulePart>>(n, part), std::vector<Role>(n, role)};
-}
+People people(SchedulePart part, std::size_t n, Role role = Role::staff) { return {n, DayPerson{part, role}}; }
 
-std::vector<DayDraw> draw_days(const ScheduleSpec& schedule, const People& who, std::uint32_t n = n_days) {
+/// most_at_meeting: of each of the schedule's rooms.
+std::vector<DayDraw> draw_days(const ScheduleSpec& schedule, const People& who, std::uint32_t n = n_days,
+                               const std::vector<int>& most_at_meeting = {8}) {
   std::vector<DayDraw> days;
-  for (std::uint32_t run = 0; run < n; ++run) {
-    days.push_back(draw_times({schedule, who.parts, who.roles, 27, run, monday}));
-  }
+  for (std::uint32_t run = 0; run < n; ++run)
+    days.push_back(draw_times({schedule, who, most_at_meeting, 27, run, monday}));
   return days;
 }
 
@@ -186,7 +182,7 @@ TEST_CASE("Visits go to a colleague at their desk, or out of the room") {
 
 TEST_CASE("Meetings have the published number, lengths and people") {
   ScheduleSpec schedule;
-  schedule.meetings.emplace();
+  schedule.meetings.emplace_back();
   std::map<int, double> numbers, lengths, sizes;
   double late = 0.0, squares = 0.0, n = 0.0, early = 0.0, presented = 0.0;
   for (const DayDraw& day : draw_days(schedule, people(SchedulePart::guest, 8))) {
@@ -220,6 +216,50 @@ TEST_CASE("Meetings have the published number, lengths and people") {
   CHECK(std::abs(mean - 3.0 * minute_s) > z_limit * error);
   CHECK(early / n == Approx(0.1).margin(0.03));
   CHECK(presented > 0.0);
+}
+
+TEST_CASE("Staff are called to meetings in several rooms, as many as published, nobody to two at once") {
+  constexpr std::size_t n_staff = 24;
+  ScheduleSpec schedule;
+  schedule.meetings.resize(2);
+  for (MeetingsSpec& room : schedule.meetings) room.attendees = Attendees::staff;
+  const std::vector<DayDraw> days = draw_days(schedule, people(SchedulePart::staff, n_staff), n_days, {8, 6});
+  std::map<int, double> sizes, called;
+  int at_once = 0;
+  for (const DayDraw& day : days) {
+    for (const auto& stays : day.stays) {
+      for (std::size_t k = 0; k < stays.size(); ++k) {
+        CHECK(stays[k].from_s < stays[k].to_s);
+        if (k > 0) CHECK(stays[k].from_s == stays[k - 1].to_s);  // nobody is nowhere, or in two places
+        if (stays[k].place == Place::meeting) CHECK(stays[k].meeting);  // none is elsewhere
+      }
+    }
+    for (std::size_t m = 0; m < day.meetings.size(); ++m) {
+      const Meeting& meeting = day.meetings[m];
+      if (meeting.room == 0 && meeting.begin_s > 10.0 * hour_s && meeting.end_s < 11.5 * hour_s)
+        ++sizes[static_cast<int>(meeting.people.size())];
+      CHECK(meeting.people.size() <= (meeting.room == 0 ? 8 : 6));
+      at_once += std::ranges::any_of(day.meetings, [&](const Meeting& other) {
+        return other.room > meeting.room && other.begin_s < meeting.end_s && meeting.begin_s < other.end_s;
+      });
+      for (const Attendance& who : meeting.people) {
+        ++called[static_cast<int>(who.person)];
+        const auto& stays = day.stays[who.person];
+        const auto stay = std::ranges::find_if(stays, [&](const Stay& s) { return s.meeting == m; });
+        REQUIRE(stay != stays.end());
+        CHECK(stay->from_s == who.comes_s);
+        CHECK(stay->to_s == Approx(who.goes_s).margin(minute_s + 1e-6));  // cut where the next one begins at once
+      }
+    }
+  }
+  CHECK(at_once > 100);
+  CHECK(chi_square(sizes, uniform(2, 8)) < 22.46);
+  CHECK(chi_square(sizes, uniform(2, 9)) > 24.32);
+  // All of them as often: the variance of a hypergeometric draw is smaller than a chi-square's; 23 degrees of freedom.
+  std::map<int, double> alike, older;
+  for (int i = 0; i < static_cast<int>(n_staff); ++i) alike[i] = 1.0 / n_staff, older[i] = i < 12 ? 1.15 / n_staff : 0.85 / n_staff;
+  CHECK(chi_square(called, alike) < 49.73);
+  CHECK(chi_square(called, older) > 49.73);
 }
 
 TEST_CASE("Rates of moves give back shares and mean stays by brute force") {
@@ -301,7 +341,7 @@ TEST_CASE("Days after a profile show it hour by hour") {
 
 TEST_CASE("Nobody comes on Saturdays and Sundays") {
   ScheduleSpec schedule;
-  schedule.meetings.emplace();
+  schedule.meetings.emplace_back();
   schedule.cleaning_h = 19.0;
   People who = people(SchedulePart::staff, 2);
   who.parts.push_back(SchedulePart::guest);
