@@ -482,8 +482,12 @@ class HeldMeeting:
 
 @dataclass(slots=True)
 class Meetings:
-    """Meetings that are held in the room."""
+    """Meetings that are held in a room."""
 
+    attendees: Literal["guests", "staff"] = "guests"
+    """Who sits in them: people who come for them, or the staff."""
+    area: str = ""
+    """Where the room is one of several."""
     fewest_a_day: int = 2
     most_a_day: int = 6
     fewest_people: int = 2
@@ -501,7 +505,7 @@ class Meetings:
     held: list[HeldMeeting] = field(default_factory=list)
     """These, every working day, instead of drawn ones."""
     seats: list[str] = field(default_factory=list)
-    """None: those that are nobody's own desk."""
+    """None: those of the area that are nobody's own desk."""
     where: Where = _where()
 
 
@@ -560,7 +564,8 @@ class Schedule:
     to_h: float = 24.0
     """And ends; with a household 28, four o'clock of the next day."""
     staff: list[Staff] = field(default_factory=list)
-    meetings: Meetings | None = None
+    meetings: list[Meetings] = field(default_factory=list)
+    """Of each room in which some are held."""
     profile: Profile | None = None
     """Instead of the agents' times and moves."""
     household: Household | None = None

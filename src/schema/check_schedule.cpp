@@ -58,7 +58,8 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   }
   if (schedule.from_h >= schedule.to_h) tell("to_h", "`to` is not after `from`");
   if (schedule.departure.mean_h <= schedule.arrival.mean_h) tell("departure", "departure must be after arrival");
-  const bool is_office = !schedule.staff.empty() || !schedule.meetings.empty() || schedule.cleaning_h || schedule.profile;
+  const bool is_office =
+      !schedule.staff.empty() || !schedule.meetings.empty() || schedule.cleaning_h || schedule.profile;
   if (!is_office && !schedule.household)
     tell("staff", "nobody comes: give `staff`, `meetings`, `cleaning` or `household`");
   if (is_office && schedule.household)

@@ -131,7 +131,8 @@ void check_meetings(const ScheduleSpec& schedule, std::size_t room, const SceneS
     }
   };
   for (const HeldMeetingSpec& held : meetings.held) require(held.people, held.where);
-  if (meetings.held.empty()) require(std::max(meetings.fewest_people, meetings.most_people.value_or(0)), meetings.where);
+  if (meetings.held.empty())
+    require(std::max(meetings.fewest_people, meetings.most_people.value_or(0)), meetings.where);
 }
 
 /// Who sleeps where: beds that are asked for, then those that nobody has.
@@ -234,8 +235,8 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
     for (int i = 0; i < staff.count; ++i) {
       const auto seat = desks.own(staff, static_cast<std::size_t>(i));
       if (!seat) {
-        diagnostics.error(staff.where, "schedule: more staff than the " + std::to_string(desks.size()) + " seats of " +
-                                           scene.name);
+        diagnostics.error(staff.where,
+                          "schedule: more staff than the " + std::to_string(desks.size()) + " seats of " + scene.name);
         break;
       }
       add(SchedulePart::staff, staff.role,
@@ -245,7 +246,8 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   for (const MeetingsSpec& meetings : schedule.meetings) {
     for (const std::string& seat : meetings.seats) desks.require(seat, meetings.where);
   }
-  for (std::size_t room = 0; room < schedule.meetings.size(); ++room) check_meetings(schedule, room, scene, diagnostics);
+  for (std::size_t room = 0; room < schedule.meetings.size(); ++room)
+    check_meetings(schedule, room, scene, diagnostics);
   diagnostics.throw_if_errors();
   int guests = 0;
   for (std::size_t room = 0; room < schedule.meetings.size(); ++room) {

@@ -65,7 +65,7 @@ class Crowd {
   std::vector<std::optional<Presence>> presences_;  ///< (n_actors) as they are now; of those in the scene
   std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
-  std::vector<Conversation> conversations_;         ///< one of each area, one in a scene without areas
+  std::vector<Conversation> conversations_;  ///< one of each area, one in a scene without areas
   Doors doors_;
   std::vector<std::optional<Vec2>> places_;  ///< (n_actors) at the last tick, in scenes with doors
   std::vector<Presence> others_;             ///< scratch

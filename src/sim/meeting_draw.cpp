@@ -100,14 +100,17 @@ Meeting draw_meeting(const Slot& slot, std::size_t room, double lateness_s, std:
   return meeting;
 }
 
-/// Is somebody at work all the time, neither at lunch nor in a meeting?
-bool can_attend(const std::vector<Stay>& stays, const Slot& slot) {
+/// Is somebody at work all the time, neither at lunch nor called to another meeting?
+bool can_attend(const std::vector<Stay>& stays, const std::vector<Meeting>& meetings, const Slot& slot) {
   double there_s = 0.0;
   for (const Stay& stay : stays) {
     const double both_s = std::min(stay.to_s, slot.end_s) - std::max(stay.from_s, slot.begin_s);
+    if (stay.meeting) {  // from its beginning to its end, however late they come
+      const Meeting& other = meetings[*stay.meeting];
+      if (other.begin_s < slot.end_s && slot.begin_s < other.end_s) return false;
+    }
     if (both_s <= 0.0) continue;
-    // One meeting may end in the minute in which the next one begins.
-    if (stay.place == Place::lunch || (stay.meeting && both_s > minute_s)) return false;
+    if (stay.place == Place::lunch) return false;
     there_s += both_s;
   }
   return there_s >= slot.end_s - slot.begin_s - 1e-6;
@@ -160,7 +163,7 @@ void draw_staff_meetings(const DaySource& source, DayDraw& draw) {
   for (const auto& [slot, room] : calls) {
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < draw.stays.size(); ++i) {
-      if (can_attend(draw.stays[i], slot)) free.push_back(i);
+      if (can_attend(draw.stays[i], draw.meetings, slot)) free.push_back(i);
     }
     if (free.size() < 2) continue;
     call_in(draw, draw_meeting(slot, room, rooms[room].lateness_min * minute_s, std::move(free), streams[room]));

@@ -197,8 +197,8 @@ class Day {
 
   void take_part(ActionLine& line, const Meeting& meeting, const MeetingSeats& seats, std::size_t who,
                  double begin_s) const {
-    const auto at = static_cast<std::size_t>(std::ranges::find(meeting.people, who, &Attendance::person) -
-                                             meeting.people.begin());
+    const auto at =
+        static_cast<std::size_t>(std::ranges::find(meeting.people, who, &Attendance::person) - meeting.people.begin());
     const Attendance& attendance = meeting.people[at];
     const PersonModel& person = trial_.people[who];
     action::Work listen;

@@ -116,9 +116,8 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
     person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
   }
   if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
-  std::ranges::stable_sort(result.meetings, {}, [](const ExpectedMeeting& meeting) {
-    return std::pair(meeting.day, meeting.begin_s);
-  });
+  std::ranges::stable_sort(result.meetings, {},
+                           [](const ExpectedMeeting& meeting) { return std::pair(meeting.day, meeting.begin_s); });
   for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
     for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
   }

@@ -74,7 +74,7 @@ class Doubts(unittest.TestCase):
     def test_shipped_rooms_and_generated_ones_raise_none(self):
         for file in sorted((DATA / "rooms").glob("*.gltf")):
             own = {"open_office": "office.yaml", "open_hall": "density.yaml", "two_rooms": "two_rooms.yaml",
-                   "flat": "flat_week.yaml"}
+                   "flat": "flat_week.yaml", "office_floor": "floor_week.yaml"}
             script = own.get(file.stem, "studyA.yaml")
             told = pirsim("check", "--scene", file, "--script", DATA / "studies" / script).stderr
             self.assertNotIn("warning: node", told, file.name)

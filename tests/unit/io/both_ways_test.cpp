@@ -233,7 +233,8 @@ TEST_CASE("a number out of its range is refused by file and by object", "[both-w
   n += schedule_numbers<ClockSpec>([](ScheduleSpec& s) -> ClockSpec& { return s.lunch; });
   n += schedule_numbers<StaffSpec>([](ScheduleSpec& s) -> StaffSpec& { return s.staff.front(); });
   n += schedule_numbers<MeetingsSpec>([](ScheduleSpec& s) -> MeetingsSpec& { return s.meetings[0]; });
-  n += schedule_numbers<HeldMeetingSpec>([](ScheduleSpec& s) -> HeldMeetingSpec& { return s.meetings[0].held.front(); });
+  n +=
+      schedule_numbers<HeldMeetingSpec>([](ScheduleSpec& s) -> HeldMeetingSpec& { return s.meetings[0].held.front(); });
   n += schedule_numbers<ProfileSpec>([](ScheduleSpec& s) -> ProfileSpec& { return *s.profile; });
   n += sensor_numbers<SensorModelSpec>([](SensorModelSpec& m) -> SensorModelSpec& { return m; });
   n += sensor_numbers<ClusterSpec>([](SensorModelSpec& m) -> ClusterSpec& { return m.clusters.front(); });

@@ -119,8 +119,8 @@ std::vector<std::string> faults_on_floor(const std::string& schedule) {
 }  // namespace
 
 TEST_CASE("Rooms for meetings are told apart by area or by seats, and are nobody's desk") {
-  const ScriptSpec script = script_with(
-      "  staff: [{count: 3}]\n  meetings:\n    - {area: meet, attendees: staff}\n    - {seats: [S4]}\n");
+  const ScriptSpec script =
+      script_with("  staff: [{count: 3}]\n  meetings:\n    - {area: meet, attendees: staff}\n    - {seats: [S4]}\n");
   const ScheduleSpec& schedule = *script.trials.front().schedule;
   CHECK(schedule.meetings[0].attendees == Attendees::staff);
   const std::string text = io::to_yaml(script);

@@ -223,20 +223,20 @@ TEST_CASE("Staff are called to meetings in several rooms, as many as published, 
   ScheduleSpec schedule;
   schedule.meetings.resize(2);
   for (MeetingsSpec& room : schedule.meetings) room.attendees = Attendees::staff;
-  const std::vector<DayDraw> days = draw_days(schedule, people(SchedulePart::staff, n_staff), n_days, {8, 6});
+  const std::vector<DayDraw> days = draw_days(schedule, people(SchedulePart::staff, n_staff), 1000, {8, 6});
   std::map<int, double> sizes, called;
   int at_once = 0;
   for (const DayDraw& day : days) {
     for (const auto& stays : day.stays) {
       for (std::size_t k = 0; k < stays.size(); ++k) {
         CHECK(stays[k].from_s < stays[k].to_s);
-        if (k > 0) CHECK(stays[k].from_s == stays[k - 1].to_s);  // nobody is nowhere, or in two places
+        if (k > 0) CHECK(stays[k].from_s == stays[k - 1].to_s);         // nobody is nowhere, or in two places
         if (stays[k].place == Place::meeting) CHECK(stays[k].meeting);  // none is elsewhere
       }
     }
     for (std::size_t m = 0; m < day.meetings.size(); ++m) {
       const Meeting& meeting = day.meetings[m];
-      if (meeting.room == 0 && meeting.begin_s > 10.0 * hour_s && meeting.end_s < 11.5 * hour_s)
+      if (meeting.room == 0 && meeting.begin_s > 10.0 * hour_s && meeting.end_s < 12.0 * hour_s)
         ++sizes[static_cast<int>(meeting.people.size())];
       CHECK(meeting.people.size() <= (meeting.room == 0 ? 8 : 6));
       at_once += std::ranges::any_of(day.meetings, [&](const Meeting& other) {
@@ -252,12 +252,13 @@ TEST_CASE("Staff are called to meetings in several rooms, as many as published, 
       }
     }
   }
-  CHECK(at_once > 100);
+  CHECK(at_once > 500);
   CHECK(chi_square(sizes, uniform(2, 8)) < 22.46);
   CHECK(chi_square(sizes, uniform(2, 9)) > 24.32);
   // All of them as often: the variance of a hypergeometric draw is smaller than a chi-square's; 23 degrees of freedom.
   std::map<int, double> alike, older;
-  for (int i = 0; i < static_cast<int>(n_staff); ++i) alike[i] = 1.0 / n_staff, older[i] = i < 12 ? 1.15 / n_staff : 0.85 / n_staff;
+  for (int i = 0; i < static_cast<int>(n_staff); ++i)
+    alike[i] = 1.0 / n_staff, older[i] = i < 12 ? 1.15 / n_staff : 0.85 / n_staff;
   CHECK(chi_square(called, alike) < 49.73);
   CHECK(chi_square(called, older) > 49.73);
 }
@@ -344,11 +345,11 @@ TEST_CASE("Nobody comes on Saturdays and Sundays") {
   schedule.meetings.emplace_back();
   schedule.cleaning_h = 19.0;
   People who = people(SchedulePart::staff, 2);
-  who.parts.push_back(SchedulePart::guest);
-  who.parts.push_back(SchedulePart::cleaner);
-  who.roles.resize(4);
+  who.push_back(DayPerson{SchedulePart::guest});
+  who.push_back(DayPerson{SchedulePart::cleaner});
+  const std::vector<int> most{8};
   for (std::int64_t day = 0; day < 14; ++day) {
-    const DayDraw draw = draw_times({schedule, who.parts, who.roles, 1, static_cast<std::uint32_t>(day), monday + day});
+    const DayDraw draw = draw_times({schedule, who, most, 1, static_cast<std::uint32_t>(day), monday + day});
     const bool works = day % 7 < 5;
     CHECK(draw.stays[0].empty() != works);
     CHECK(draw.meetings.empty() != works);
