@@ -100,8 +100,9 @@ void CasasWriter::label(std::span<const Sample> rows, std::span<const OccupantRo
 
 void CasasWriter::write(const std::vector<Line>& lines) {
   for (const Line& line : lines) {
-    for (const std::string& label : line.ends) out_ << line.text << ' ' << label << " end\n";
+    // What begins and ends at the same line begins first, so that who reads on sees it end.
     for (const std::string& label : line.begins) out_ << line.text << ' ' << label << " begin\n";
+    for (const std::string& label : line.ends) out_ << line.text << ' ' << label << " end\n";
     if (line.ends.empty() && line.begins.empty()) out_ << line.text << '\n';
   }
 }

@@ -64,8 +64,8 @@ TEST_CASE("activities begin and end at the lines within them, a line with two la
   CHECK(log_of({day}) ==
         "2026-03-02 00:02:00 M1 ON ann_eating begin\n"
         "2026-03-02 00:03:00 M1 OFF ann_eating end\n"
-        "2026-03-02 00:04:00 M2 ON ann_reading end\n"
         "2026-03-02 00:04:00 M2 ON ann_reading begin\n"
+        "2026-03-02 00:04:00 M2 ON ann_reading end\n"
         "2026-03-02 00:05:00 M2 OFF\n"
         "2026-03-02 00:06:00 M1 ON ann_toilet begin\n"
         "2026-03-02 00:06:00 M1 OFF ann_toilet end\n");
