@@ -51,16 +51,21 @@ Pedestrian::WayToDoor Pedestrian::way_to_door(const DoorsSeen& doors, std::size_
   return {enters_m < farthest_m && (leads_through || step != 0) ? enters_m : unlimited_m, through};
 }
 
+/// They want the door that they go through next; once it is open, one behind it that stops them before they are
+/// through, as a front door beside that of the bathroom does.
 double Pedestrian::free_way_to_doors(const DoorsSeen& doors) {
-  double free_m = unlimited_m, nearest_m = unlimited_m;
+  double free_m = unlimited_m, nearest_m = unlimited_m, stops_m = unlimited_m;
   if (!route_) return free_m;
+  std::optional<std::size_t> stopping;
   for (std::size_t i = 0; i < doors.leaves.size(); ++i) {
     const WayToDoor way = way_to_door(doors, i);
     free_m = std::min(free_m, way.free_m);
-    if (way.through_m.value_or(nearest_m) >= nearest_m) continue;
-    nearest_m = *way.through_m;
-    wanted_door_ = i;
+    if (!way.through_m) continue;
+    if (way.free_m < stops_m) stops_m = way.free_m, stopping = i;
+    if (*way.through_m < nearest_m) nearest_m = *way.through_m, wanted_door_ = i;
   }
+  if (!stopping || stops_m >= nearest_m) return free_m;
+  if (doors.steps[*wanted_door_] == doors.leaves[*wanted_door_].open_step()) wanted_door_ = stopping;
   return free_m;
 }
 

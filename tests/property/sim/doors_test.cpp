@@ -134,6 +134,25 @@ TEST_CASE("one who comes in, goes to and fro and leaves opens each door, and bot
   }
 }
 
+TEST_CASE("who is stopped in an open doorway by the next door, round the corner, opens that one") {
+  for (const DoorHinge hinge : {DoorHinge::left, DoorHinge::right}) {
+    SceneSpec scene = two_rooms({front_door(DoorState::shut), inner_door(DoorState::habit)});
+    // The way in lies south, its leaf sweeps up to 0.3 m before the opening between the rooms.
+    scene.floor = FloorArea({{{0, -1.05}, {6, -1.05}, {6, 2}, {0, 2}}}, 0.0);
+    scene.meshes.erase(scene.meshes.begin());  // the wall behind
+    const Frame south{rotation_from_heading(heading_of(Vec2(0, 1))), Vec3(2.2, 0, -1.05)};
+    scene.entrances.front().world_from_entrance = scene.doors.front().world_from_door = south;
+    scene.doors.front().hinge = hinge;
+    const PersonSpec leaver = person("L", {act(action::Enter{"in"}), act(action::Walk{{{4.8, 0.3}}}),
+                                           act(action::Wait{3.0}), act(action::Leave{"in"})});
+    const Model model = compile(scene, script_of({leaver}));
+    const Watched seen = watch(model, 0);
+    INFO(seen.end_s << " s; deepest: " << seen.deepest);
+    CHECK(seen.all_done);
+    CHECK(seen.end_s < 40.0);
+  }
+}
+
 TEST_CASE("crowds go through a door in both directions: all finish, leaves keep off people's trunks", "[seconds]") {
   std::vector<PersonSpec> people;
   for (int i = 0; i < 6; ++i) people.push_back(walker("W" + std::to_string(i), 4.0 * i, 4, -1.2 + 0.48 * i));
