@@ -23,6 +23,7 @@ BELOW = {
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
+    "control": {"io", "schema", "geom", "core"},
     "counting": {"dataset", "io", "schema", "core"},
     "calibrate": {"counting", "dataset", "studies", "effects", "io", "schema", "geom", "stats", "core"},
 }
@@ -49,7 +50,7 @@ PUBLIC = {
     "coverage": "studies", "look": "studies", "walk_test": "studies",
     "room": "dataset", "flat": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io", "log": "io", "log_facts": "io",
-    "counting": "counting", "calibrate": "calibrate",
+    "control": "control", "counting": "counting", "calibrate": "calibrate",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
 # header prefix of a third-party library -> the only layers that may include it

@@ -62,7 +62,9 @@ enum class Purpose : std::uint32_t {
   weighted_rooms = 406,  ///< where drawing rooms by weight begins
   flat = 407,            ///< rooms, furniture and sensors of a parametric flat; entity: which try
   flat_household = 408,  ///< how many people live in a flat, what they do, how old they are, their habits
-  test = 0xFFFF0000,     ///< reserved for tests
+  // Of light, from 500 on.
+  drawn_days = 500,   ///< days drawn with replacement, for intervals over days
+  test = 0xFFFF0000,  ///< reserved for tests
 };
 
 struct StreamKey {

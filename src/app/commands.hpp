@@ -16,6 +16,7 @@ void add_home_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_count_command(CLI::App& app);
+void add_control_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_effects_command(CLI::App& app);
@@ -36,6 +37,7 @@ inline constexpr std::array all_commands{
     add_run_command,       add_day_command,      add_check_command,      add_preview_command, add_export_command,
     add_view_command,      add_room_command,     add_home_command,       add_dataset_command, add_effects_command,
     add_coverage_command,  add_walktest_command, add_placements_command, add_status_command,  add_merge_command,
-    add_reconcile_command, add_log_command,      add_calibrate_command,  add_count_command,   add_help_command};
+    add_reconcile_command, add_log_command,      add_calibrate_command,  add_count_command,   add_control_command,
+    add_help_command};
 
 }  // namespace pirsim::app

@@ -1,0 +1,163 @@
+// Light that motion sensors switch: what a delay costs people who sit in the dark, and what it costs in empty light.
+// docs/howto/light.md
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/columns.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/interval.hpp"
+#include "pirsim/sample.hpp"
+
+namespace pirsim::control {
+
+// The rule by which light is switched, as plain data.
+
+enum class Timer {
+  restarts,  ///< every motion starts the delay anew
+  runs_out   ///< only the motion that follows the end of the delay does
+};
+
+/// Several sensors have to report motion, at most so long after each other.
+struct TogetherSpec {
+  int sensors = 2;
+  double within_s = 60.0;  ///< `assumed`; 0 to 300 tried
+  bool operator==(const TogetherSpec&) const = default;
+};
+
+/// People switch the light on, who come into the dark or are left in it.
+struct ManualSpec {
+  double switch_s = 10.0;  ///< until they have done so (`assumed`; 0 to 60 tried)
+  double grace_s = 15.0;   ///< so long after it went off, motion brings it back (`assumed`; 0 to 60 tried)
+  bool operator==(const ManualSpec&) const = default;
+};
+
+/// Another delay from one hour of the day to another, over midnight if `to` is the earlier one.
+struct NightSpec {
+  double from_h = 22.0, to_h = 6.0;
+  double delay_min = 2.0;
+  bool operator==(const NightSpec&) const = default;
+};
+
+/// The light of one area, and the sensors that switch it.
+struct LightSpec {
+  std::string id = "light";
+  std::string area;                      ///< whose people it is for; empty: all
+  std::vector<std::string> sensors;      ///< none: all that the rows have
+  std::optional<TogetherSpec> together;  ///< none: any one of them
+  std::vector<double> delays_min{10.0};  ///< the first is what lit times and the worst moments are told of
+  std::optional<ManualSpec> manual;      ///< none: motion switches it on
+  Timer timer = Timer::restarts;
+  double least_on_min = 0.0;         ///< it is never lit for less
+  std::string door;                  ///< motion while it is shut keeps the light on until it opens; empty: none
+  std::optional<NightSpec> night;    ///< by the rows' clock
+  double from_h = 0.0, to_h = 24.0;  ///< hours in which it is dark without light, by the rows' clock
+  double power_w = 0.0;              ///< 0: energy isn't told
+  Where where;
+  bool operator==(const LightSpec&) const = default;
+};
+
+struct RuleSpec {
+  std::string name = "light";
+  std::vector<LightSpec> lights;
+  bool operator==(const RuleSpec&) const = default;
+};
+
+/// docs/formats/control.md. Throws Error (io, input, usage) with every fault.
+[[nodiscard]] RuleSpec read_rule(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+[[nodiscard]] RuleSpec parse_rule(std::string_view text, const std::string& name);
+
+// What it costs.
+
+/// Over some days: a number, and the middle 90 % of what days drawn with replacement give; none for less than three.
+struct Figure {
+  double value = 0.0;
+  std::optional<Interval> over_days{};
+};
+
+/// Of one light and one delay. What needs to know where people are is missing if the rows don't tell.
+struct DelayCosts {
+  double delay_min = 0.0;
+  double lit_h = 0.0;               ///< in all
+  double switched_on_a_day = 0.0;
+  Figure lit_share;                 ///< of all hours
+  double lit_empty_h = 0.0;         ///< while nobody was there
+  double dark_h = 0.0;              ///< while somebody was there
+  std::int64_t false_offs = 0;      ///< it went off while somebody was there
+  Figure false_offs_an_hour;        ///< of occupied time
+  Figure dark_share;                ///< of occupied time
+  double longest_dark_s = 0.0;
+  double mean_wait_s = 0.0, longest_wait_s = 0.0;  ///< from coming into an empty area to light
+};
+
+/// Somebody was in the dark.
+struct DarkSpell {
+  int replicate = 0;
+  std::string trial;
+  double from_s = 0.0;      ///< of the run
+  std::string clock;        ///< or no text
+  double length_s = 0.0;
+  enum class Cause { went_off, stayed_off } cause = Cause::went_off;
+};
+
+enum class People { known, unknown };
+
+struct LightCosts {
+  std::string id;
+  std::vector<double> rule_delays_min;
+  People people = People::known;
+  std::int64_t days = 0;
+  double hours = 0.0;     ///< that count: of rows in which all of its sensors are known
+  double unknown_h = 0.0;
+  double occupied_h = 0.0;
+  double span_h = 0.0;     ///< from a day's first person to its last: who switches by hand, and not between
+  double power_w = 0.0;
+  std::vector<DelayCosts> by_delay;  ///< in order: every minute up to an hour, and the rule's
+  std::vector<DarkSpell> worst;      ///< of the first delay, the longest first; ten at most
+
+  [[nodiscard]] const DelayCosts& at(double delay_min) const;  ///< of one that is there
+};
+
+struct Costs {
+  std::string rule;
+  double window_s = 0.0;
+  std::vector<LightCosts> lights;
+  std::vector<Issue> remarks;
+};
+
+/// Whether each light is on in a row, by its first delay.
+struct LitRow {
+  std::span<const std::uint8_t> lit;   ///< (n_lights) 0 or 1; 2: its sensors aren't known
+  std::span<const std::int32_t> people;  ///< (n_lights) of its area, -1: not known
+};
+
+/// Switches lights row by row. Memory grows with the number of days alone.
+class Control {
+ public:
+  /// columns: what the rows have. people: whether they tell it. Throws Error(input) for sensors, areas and doors that
+  /// the rows don't have, and for a rule that asks for more sensors than a light has.
+  Control(RuleSpec rule, ColumnOwners columns, double window_s, People people = People::known);
+  ~Control();
+  Control(Control&&) noexcept;
+
+  /// In order of time. A bit of 2 isn't known, people below 0 neither. A new replicate or trial begins in the dark.
+  /// day: what intervals are over; a run if it is empty.
+  LitRow add(const Sample& row, std::string_view day = {});
+  [[nodiscard]] Costs finish() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A row a light and delay; docs/formats/control.md.
+[[nodiscard]] std::string to_csv(const Costs& costs);
+
+}  // namespace pirsim::control

@@ -1,0 +1,224 @@
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "app/log_inputs.hpp"
+#include "app/long_work.hpp"
+#include "app/session.hpp"
+#include "control/outputs.hpp"
+#include "control/page.hpp"
+#include "control/row_source.hpp"
+#include "core/text.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/compression.hpp"
+#include "io/pages/report.hpp"
+#include "pirsim/control.hpp"
+#include "pirsim/version.hpp"
+#include "schema/areas.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct ControlOptions {
+  std::vector<std::filesystem::path> rows;
+  LogInputs log;
+  Inputs inputs;  ///< of the scene
+  std::filesystem::path rule, output, report, light, schedule;
+  std::vector<double> delays_min;
+  std::optional<double> window_s;
+  int schedule_min = 15;
+};
+
+/// A light for each area of the scene, switched by the sensors that watch it; one for all without areas.
+control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue>& remarks) {
+  control::RuleSpec rule;
+  rule.name = options.inputs.scene.empty() ? "any sensor" : io::stem_of_input(options.inputs.scene);
+  if (options.inputs.scene.empty()) {
+    rule.lights.emplace_back();
+    return rule;
+  }
+  const SceneSpec scene = io::read_scene(options.inputs.scene, scene_options(options.inputs));
+  const Areas areas(scene);
+  if (areas.empty()) rule.lights.emplace_back();
+  for (std::size_t area = 0; area < areas.size(); ++area) {
+    control::LightSpec light;
+    light.id = light.area = areas.names()[area];
+    for (const std::size_t sensor : areas.sensors_of(area)) light.sensors.push_back(scene.sensors[sensor].id);
+    if (!light.sensors.empty()) {
+      rule.lights.push_back(std::move(light));
+    } else {
+      remarks.push_back({Severity::warning, {scene.name}, "area '" + light.id + "' has no sensor, and so no light"});
+    }
+  }
+  if (rule.lights.empty()) throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
+  return rule;
+}
+
+control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& remarks) {
+  control::RuleSpec rule =
+      options.rule.empty() ? rule_of_scene(options, remarks) : control::read_rule(options.rule);
+  for (control::LightSpec& light : rule.lights) {
+    if (!options.delays_min.empty()) light.delays_min = options.delays_min;
+  }
+  return rule;
+}
+
+/// What rows are made into, as they come.
+class Outputs {
+ public:
+  Outputs(const ControlOptions& options, const control::RuleSpec& rule, const control::RowsAbout& about)
+      : control_(rule, about.columns, about.window_s, about.people), days_(rule, about.window_s) {
+    if (!options.light.empty()) {
+      lit_file_.emplace(options.light);
+      lit_data_.emplace(lit_file_->stream(), io::compression_of(options.light));
+      lit_.emplace(lit_text_, rule);
+    }
+    if (!options.schedule.empty()) schedule_.emplace(rule, about.window_s, options.schedule_min);
+  }
+
+  void add(const Sample& row, std::string_view day) {
+    const control::LitRow lit = control_.add(row, day);
+    days_.add(row, lit);
+    if (schedule_) schedule_->add(row, lit);
+    if (!lit_) return;
+    lit_->add(row, lit);
+    constexpr std::streamoff piece = 1 << 16;
+    if (lit_text_.tellp() > piece) flush();
+  }
+
+  [[nodiscard]] control::Costs costs() const { return control_.finish(); }
+  [[nodiscard]] const control::LitDays& days() const noexcept { return days_; }
+
+  void finish(const ControlOptions& options) {
+    if (lit_) {
+      flush();
+      lit_data_->finish();
+      lit_file_->commit();
+    }
+    if (schedule_) {
+      io::AtomicFile file(options.schedule);
+      schedule_->write(file.stream());
+      file.commit();
+    }
+  }
+
+ private:
+  void flush() {
+    lit_data_->write(lit_text_.str());
+    lit_text_.str({});
+  }
+
+  control::Control control_;
+  control::LitDays days_;
+  std::optional<control::Schedule> schedule_;
+  std::ostringstream lit_text_;
+  std::optional<io::AtomicFile> lit_file_;
+  std::optional<io::DataWriter> lit_data_;
+  std::optional<control::LitTable> lit_;
+};
+
+std::string view_command(const ControlOptions& options) {
+  if (options.inputs.scene.empty() || options.inputs.script.empty()) return {};
+  std::string words = "pirsim view";
+  for (const std::string& word : model_options(options.inputs)) words += " " + word;
+  return words;
+}
+
+template <typename Source>
+void control_rows(const ControlOptions& options, const Source& source) {
+  std::vector<Issue> remarks;
+  const control::RuleSpec rule = rule_of(options, remarks);
+  Outputs outputs(options, rule, source.about());
+  {
+    const Progress progress({"switching light"}, options.inputs.verbosity);
+    const StopRequest stop;
+    source.each([&](const Sample& row, std::string_view day) {
+      stop.throw_if_made();
+      outputs.add(row, day);
+    });
+  }
+  control::Costs costs = outputs.costs();
+  costs.remarks.insert(costs.remarks.begin(), remarks.begin(), remarks.end());
+  if (source.about().people == control::People::unknown) {
+    costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
+  }
+  tell(costs.remarks, options.inputs.verbosity);
+  if (options.inputs.verbosity != Verbosity::quiet) std::cout << control::to_text(costs);
+  require_written();
+  if (!options.output.empty()) io::write_text_file(options.output, control::to_csv(costs));
+  if (!options.report.empty()) {
+    io::Report report = control::control_page(costs, outputs.days(), view_command(options));
+    report.footer = "pirsim " + version() + " (" + git_revision() + ")";
+    for (const std::filesystem::path& file : options.rows.empty() ? options.log.files : options.rows)
+      report.footer += ", " + io::name_of_input(file);
+    if (!options.rule.empty()) report.footer += ", " + io::name_of_input(options.rule);
+    io::write_report(options.report, report);
+  }
+  outputs.finish(options);
+}
+
+void check_files(const ControlOptions& options) {
+  const std::vector<NamedOutput> outputs{{"-o", options.output, {".csv"}},
+                                         {"--light", options.light, io::table_endings()},
+                                         {"--schedule", options.schedule, {".csv"}},
+                                         {"--report", options.report, {".html"}}};
+  check_outputs(outputs, options.inputs);
+  std::vector<std::string> read{options.rule.string(), options.log.map.string()};
+  for (const auto* files : {&options.rows, &options.log.files}) {
+    for (const std::filesystem::path& file : *files) read.push_back(file.string());
+  }
+  keep_inputs(outputs, read);
+  if (options.rows.empty() == options.log.files.empty())
+    throw Error(ErrorCode::usage, "say which rows: files of runs, a dataset's folder, or --log");
+  if (options.schedule_min < 1 || 60 % options.schedule_min != 0)
+    throw Error(ErrorCode::usage, "--schedule-minutes: expected a divisor of 60");
+}
+
+void control_light(const ControlOptions& options) {
+  check_files(options);
+  if (!options.rows.empty()) return control_rows(options, control::RowFiles(options.rows));
+  const Log log = read_log(options.log, options.inputs.verbosity);
+  control_rows(options, control::LogSamples(log, options.window_s));
+}
+
+}  // namespace
+
+void add_control_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "control", "switch light by sensors, and say what each delay costs", R"(
+  pirsim control week.csv --report light.html                        one light, by any sensor
+  pirsim control week.csv --scene office.gltf --report light.html    a light for each area, by its own sensors
+  pirsim control week.csv --rule rule.yaml -o costs.csv --light lit.csv
+  pirsim control week.csv --schedule light.csv --schedule-minutes 10  shares of time, for EnergyPlus
+  pirsim control --log week.csv --delay 5 --report light.html        of a log: when it would have been lit
+)");
+  const auto options = std::make_shared<ControlOptions>();
+  command.add_option("rows", options->rows, "rows of runs, or a dataset's folder")->option_text("ROWS...");
+  offer_log(command, options->log);
+  command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")->option_text("SECONDS");
+  offer_input_file(command, "--rule", options->rule, "lights, their sensors and delays, YAML (default: any sensor)");
+  command.add_option("--delay", options->delays_min, "instead of the rule's; several: the first is the one that counts")
+      ->option_text("MINUTES...")
+      ->check(CLI::Range(0.0, 1440.0));
+  Inputs& inputs = options->inputs;
+  offer_input_file(command, "--scene", inputs.scene, "without a rule: a light for each of its areas; .gltf or .glb");
+  offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
+  offer_input_file(command, "--script", inputs.script, "with --scene: what made the rows, for links to the worst moments");
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  offer_output(command, options->output, "FILE", "costs by light and delay, .csv");
+  command.add_option("--report", options->report, "a page with the curves, the lit times and the worst moments, .html")
+      ->option_text("FILE");
+  command.add_option("--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst")->option_text("FILE");
+  command.add_option("--schedule", options->schedule, "shares of time lit and present, for EnergyPlus, .csv")
+      ->option_text("FILE");
+  command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")->option_text("MINUTES");
+  offer_quiet(command, inputs.verbosity);
+  command.callback([options] { control_light(*options); });
+}
+
+}  // namespace pirsim::app

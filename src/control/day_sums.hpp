@@ -1,0 +1,36 @@
+// What is summed up of a light, and figures over days.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pirsim/control.hpp"
+
+namespace pirsim::control {
+
+/// Of one day and delay, in rows.
+struct DelaySums {
+  std::int32_t lit = 0, lit_empty = 0, dark = 0, false_offs = 0, switched_on = 0;
+};
+
+/// Of one day.
+struct DaySums {
+  std::int32_t rows = 0, unknown = 0, occupied = 0;
+  std::int32_t first_occupied = -1, last_occupied = -1;  ///< rows; -1: nobody came
+  std::vector<DelaySums> by_delay;
+  [[nodiscard]] std::int32_t span() const { return first_occupied < 0 ? 0 : last_occupied - first_occupied + 1; }
+};
+
+/// Days drawn with replacement: how often each is drawn, (draws x days); the same for every figure.
+class DrawnDays {
+ public:
+  explicit DrawnDays(std::size_t n_days);
+  /// The sum of `above` over that of `below`, 0 without any of that. (n_days) each.
+  [[nodiscard]] Figure ratio(const std::vector<double>& above, const std::vector<double>& below) const;
+
+ private:
+  std::size_t n_days_;
+  std::vector<std::uint16_t> times_;
+};
+
+}  // namespace pirsim::control

@@ -1,0 +1,284 @@
+#include "control/page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "core/text.hpp"
+#include "schema/clock.hpp"
+
+namespace pirsim::control {
+namespace {
+
+std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }
+std::string share(double value) { return fixed(100.0 * value, value < 0.1 ? 1 : 0) + " %"; }
+std::string range(const Figure& figure, double scale, int digits) {
+  if (!figure.over_days) return "";
+  return " (" + fixed(scale * figure.over_days->low, digits) + " to " + fixed(scale * figure.over_days->high, digits) + ")";
+}
+std::string time(double seconds) {
+  return seconds < 120.0 ? fixed(seconds, 0) + " s" : fixed(seconds / 60.0, seconds < 6000.0 ? 1 : 0) + " min";
+}
+double a_day(const LightCosts& light, double hours) { return hours / std::max<double>(1.0, static_cast<double>(light.days)); }
+
+/// Its delays that a table tells.
+std::vector<double> told_delays(const LightCosts& light) {
+  std::vector<double> delays{0.0, 1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0};
+  delays.insert(delays.end(), light.rule_delays_min.begin(), light.rule_delays_min.end());
+  std::ranges::sort(delays);
+  delays.erase(std::ranges::unique(delays).begin(), delays.end());
+  return delays;
+}
+
+std::string energy(const LightCosts& light, double hours) {
+  return light.power_w > 0.0 ? fixed(a_day(light, hours) * light.power_w / 1000.0, 2) : "";
+}
+
+io::Table table_of(const LightCosts& light) {
+  const bool knows = light.people == People::known;
+  io::Table table{{"delay", "lit, h a day", "switched on a day"}, {}};
+  if (knows) {
+    table.headings.insert(table.headings.begin() + 1,
+                          {"goes off on somebody, an occupied hour", "dark, % of occupied time", "longest dark"});
+    table.headings.insert(table.headings.end(), {"lit and empty, h a day", "until light, mean"});
+  }
+  if (light.power_w > 0.0) table.headings.push_back("kWh a day");
+  for (const double delay : told_delays(light)) {
+    const DelayCosts& at = light.at(delay);
+    std::vector<std::string> row{minutes(delay), fixed(a_day(light, at.lit_h), 2), fixed(at.switched_on_a_day, 1)};
+    if (knows) {
+      row.insert(row.begin() + 1,
+                 {fixed(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
+                  fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s)});
+      row.insert(row.end(), {fixed(a_day(light, at.lit_empty_h), 2), time(at.mean_wait_s)});
+    }
+    if (light.power_w > 0.0) row.push_back(energy(light, at.lit_h));
+    table.rows.push_back(std::move(row));
+  }
+  const auto add = [&](const std::string& name, double hours, double empty_h) {
+    std::vector<std::string> row{name, fixed(a_day(light, hours), 2), ""};
+    if (knows) {
+      row.insert(row.begin() + 1, {"0", "0", ""});
+      row.insert(row.end(), {fixed(a_day(light, empty_h), 2), ""});
+    }
+    if (light.power_w > 0.0) row.push_back(energy(light, hours));
+    table.rows.push_back(std::move(row));
+  };
+  add("always on", light.hours, light.hours - light.occupied_h);
+  if (knows) {
+    add("by hand, from the day's first person to its last", light.span_h, light.span_h - light.occupied_h);
+    add("while somebody is there", light.occupied_h, 0.0);
+  }
+  return table;
+}
+
+using Line = io::LineChart::Line;
+
+template <typename Value>
+Line curve(const LightCosts& light, const std::string& name, Value value) {
+  constexpr double longest_min = 60.0;
+  Line line{name, {}};
+  for (const DelayCosts& at : light.by_delay) {
+    if (at.delay_min <= longest_min) line.points.push_back(value(at));
+  }
+  return line;
+}
+
+io::LineChart chart(const LightCosts& light, std::string title, std::string y_label, std::vector<Line> lines) {
+  io::LineChart chart;
+  chart.title = std::move(title);
+  chart.x_label = "delay, min";
+  chart.y_label = std::move(y_label);
+  chart.x_low = 0.0, chart.x_high = 60.0;
+  double most = 0.0;
+  for (const Line& line : lines) {
+    for (const auto& point : line.points) most = std::max({most, point.y, point.high.value_or(0.0)});
+  }
+  chart.y_high = most > 0.0 ? 1.05 * most : 1.0;
+  chart.lines = std::move(lines);
+  chart.note = light.days >= 3 ? "Ranges: the middle 90 % of what days drawn with replacement give." : "";
+  return chart;
+}
+
+std::vector<io::Chart> charts_of(const LightCosts& light) {
+  std::vector<io::Chart> charts;
+  const auto of = [](const DelayCosts& at, const Figure& figure, double scale) {
+    io::LineChart::Point point{at.delay_min, scale * figure.value, {}, {}};
+    if (figure.over_days) point.low = scale * figure.over_days->low, point.high = scale * figure.over_days->high;
+    return point;
+  };
+  if (light.people == People::known) {
+    charts.emplace_back(chart(light, "What people pay", "times it goes off on somebody, an occupied hour",
+                              {curve(light, light.id, [&](const DelayCosts& at) {
+                                return of(at, at.false_offs_an_hour, 1.0);
+                              })}));
+  }
+  const auto flat = [&](const std::string& name, double hours) {
+    return curve(light, name, [&, hours](const DelayCosts& at) {
+      return io::LineChart::Point{at.delay_min, a_day(light, hours), {}, {}};
+    });
+  };
+  std::vector<Line> lines{curve(light, "lit", [&](const DelayCosts& at) {
+    return io::LineChart::Point{at.delay_min, a_day(light, at.lit_h), {}, {}};
+  })};
+  if (light.people == People::known) {
+    lines.push_back(curve(light, "lit and empty", [&](const DelayCosts& at) {
+      return io::LineChart::Point{at.delay_min, a_day(light, at.lit_empty_h), {}, {}};
+    }));
+    lines.push_back(flat("by hand, first to last", light.span_h));
+    lines.push_back(flat("while somebody is there", light.occupied_h));
+  }
+  charts.emplace_back(chart(light, "What the delay costs in light", "hours a day", std::move(lines)));
+  return charts;
+}
+
+std::string moment(const DarkSpell& spell, double seconds) {
+  if (spell.clock.empty()) return fixed(seconds, 0);
+  constexpr std::size_t to_time = 11, hms = 8;
+  const double since = seconds - spell.from_s;
+  const auto hours = clock_hours(spell.clock.substr(to_time, hms));
+  return clock_text(0, std::fmod(3600.0 * hours.value_or(0.0) + since + 86400.0, 86400.0)).substr(to_time, hms);
+}
+
+std::string command(const DarkSpell& spell, const std::string& view) {
+  constexpr double before_s = 60.0, most_s = 300.0;
+  std::string words = view.empty() ? "pirsim view --scene ... --script ..." : view;
+  words += " --replicate " + std::to_string(spell.replicate);
+  if (!spell.trial.empty()) words += " --trial " + spell.trial;
+  const double from_s = std::max(0.0, spell.from_s - before_s);
+  return words + " --from " + moment(spell, from_s) + " --to " +
+         moment(spell, spell.from_s + std::min(spell.length_s, most_s)) + " -o moment.html";
+}
+
+io::ReportSection worst_section(const LightCosts& light, const std::string& view) {
+  io::ReportSection section;
+  section.heading = light.id + ": the longest times in the dark";
+  section.paragraphs = {"With a delay of " + minutes(light.rule_delays_min.front()) + "."};
+  io::Table table{{"run", "from", "for", "what happened", "look at it"}, {}};
+  for (const DarkSpell& spell : light.worst) {
+    table.rows.push_back({std::to_string(spell.replicate) + (spell.trial.empty() ? "" : ", trial " + spell.trial),
+                          spell.clock.empty() ? fixed(spell.from_s, 0) + " s" : spell.clock, time(spell.length_s),
+                          spell.cause == DarkSpell::Cause::went_off ? "it went off on somebody"
+                                                                    : "somebody came, and it stayed off",
+                          command(spell, view)});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+std::string finding_of(const LightCosts& light) {
+  const double delay = light.rule_delays_min.front();
+  const DelayCosts& at = light.at(delay);
+  std::string text = light.id + ", with a delay of " + minutes(delay) + ": ";
+  if (light.people == People::known) {
+    text += "it goes off on somebody " + fixed(at.false_offs_an_hour.value, 2) + " times an occupied hour" +
+            range(at.false_offs_an_hour, 1.0, 2) + ", people are in the dark for " + share(at.dark_share.value) +
+            " of the time that they are there, and it is lit for nobody " + fixed(a_day(light, at.lit_empty_h), 2) +
+            " h a day.";
+  } else {
+    text += "it is lit for " + fixed(a_day(light, at.lit_h), 2) +
+            " h a day; the rows don't say when somebody is there, so that nobody knows who was left in the dark.";
+  }
+  return text;
+}
+
+}  // namespace
+
+LitDays::LitDays(const RuleSpec& rule, double window_s) : window_s_(window_s) {
+  for (const LightSpec& light : rule.lights) names_.push_back(light.id);
+}
+
+void LitDays::add(const Sample& row, const LitRow& lit) {
+  constexpr std::size_t to_date = 10, to_time = 11;
+  has_clock_ = has_clock_ || !row.clock.empty();
+  const std::string name = has_clock_ ? row.clock.substr(0, to_date)
+                                      : "run " + std::to_string(row.replicate) + ", " + row.trial;
+  if (days_.empty() || days_.back().first != name) {
+    if (days_.size() >= most_days) return;
+    days_.push_back({name, {std::vector<double>(n_bins * names_.size()), std::vector<double>(n_bins * names_.size())}});
+  }
+  const auto clock_s = has_clock_ ? 3600.0 * clock_hours(row.clock.substr(to_time)).value_or(0.0) : row.time_s;
+  const auto bin = static_cast<std::size_t>(std::max(0.0, clock_s - 0.5 * window_s_) / bin_s);
+  if (bin >= n_bins) return;
+  Bins& bins = days_.back().second;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    bins.lit[bin * names_.size() + i] += lit.lit[i] == 1 ? window_s_ : 0.0;
+    double& people = bins.people[bin * names_.size() + i];
+    people = std::max<double>(people, lit.people[i]);
+  }
+}
+
+io::DaysChart LitDays::chart() const {
+  io::DaysChart chart;
+  chart.title = "When it is lit";
+  chart.bin_s = bin_s;
+  chart.n_bins = static_cast<int>(n_bins);
+  chart.ticks = has_clock_ ? io::DaysChart::Ticks::clock : io::DaysChart::Ticks::seconds;
+  using Day = io::DaysChart;
+  const auto runs_of = [&](const std::vector<double>& values, std::size_t light, auto level_of) {
+    std::vector<Day::Run> runs;
+    for (std::size_t bin = 0; bin < n_bins; ++bin) {
+      const int level = level_of(values[bin * names_.size() + light]);
+      if (level == 0) continue;
+      const int at = static_cast<int>(bin);
+      if (!runs.empty() && runs.back().to == at && runs.back().level == level) {
+        ++runs.back().to;
+      } else {
+        runs.push_back({at, at + 1, level});
+      }
+    }
+    return runs;
+  };
+  for (const auto& [name, bins] : days_) {
+    Day::Day day{name, {}};
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      day.lines.push_back({names_[i], runs_of(bins.lit, i, [](double s) {
+                             const double lit = s / bin_s;
+                             return lit <= 0.0 ? 0 : lit <= 0.05 ? 1 : lit <= 0.2 ? 2 : lit <= 0.5 ? 3 : 4;
+                           })});
+      day.lines.push_back({"people", runs_of(bins.people, i, [](double n) { return std::max(0, static_cast<int>(n)); }),
+                           Day::Shows::people});
+    }
+    chart.days.push_back(std::move(day));
+  }
+  return chart;
+}
+
+io::Report control_page(const Costs& costs, const LitDays& days, const std::string& view) {
+  io::Report report;
+  report.title = "Light: " + costs.rule;
+  for (const LightCosts& light : costs.lights) report.finding += (report.finding.empty() ? "" : " ") + finding_of(light);
+  report.paragraphs = {
+      "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
+      "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
+  for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
+  for (const LightCosts& light : costs.lights) {
+    io::ReportSection section;
+    section.heading = light.id;
+    section.paragraphs = {counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
+                          (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
+                          (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") +
+                          "."};
+    section.tables.push_back(table_of(light));
+    section.charts = charts_of(light);
+    report.sections.push_back(std::move(section));
+  }
+  io::ReportSection lit;
+  lit.heading = "The lit time, day by day";
+  lit.paragraphs = {"The first days, each light by its first delay. The darker the line, the more of two minutes is lit."};
+  lit.charts.emplace_back(days.chart());
+  report.sections.push_back(std::move(lit));
+  for (const LightCosts& light : costs.lights) {
+    if (!light.worst.empty()) report.sections.push_back(worst_section(light, view));
+  }
+  return report;
+}
+
+std::string to_text(const Costs& costs) {
+  std::ostringstream text;
+  for (const LightCosts& light : costs.lights) text << finding_of(light) << '\n';
+  return text.str();
+}
+
+}  // namespace pirsim::control

@@ -1,0 +1,37 @@
+// The page about light: curves over the delay, when it is lit, the worst moments.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "io/pages/report.hpp"
+#include "pirsim/control.hpp"
+
+namespace pirsim::control {
+
+/// When each light is lit and how many people are there, of the first days.
+class LitDays {
+ public:
+  explicit LitDays(const RuleSpec& rule, double window_s);
+  void add(const Sample& row, const LitRow& lit);
+  [[nodiscard]] io::DaysChart chart() const;
+
+ private:
+  struct Bins {
+    std::vector<double> lit, people;  ///< (n_bins x n_lights) seconds, and most people
+  };
+  static constexpr double bin_s = 120.0;
+  static constexpr std::size_t n_bins = 720, most_days = 14;
+  std::vector<std::string> names_;
+  double window_s_;
+  std::vector<std::pair<std::string, Bins>> days_;
+  bool has_clock_ = false;
+};
+
+/// view: words of a command that makes a page of a moment, "pirsim view --scene room.gltf --script week.yaml"; or no
+/// text.
+[[nodiscard]] io::Report control_page(const Costs& costs, const LitDays& days, const std::string& view);
+/// The figures of the rule's delays in a few lines, for a terminal.
+[[nodiscard]] std::string to_text(const Costs& costs);
+
+}  // namespace pirsim::control
