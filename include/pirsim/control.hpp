@@ -85,14 +85,14 @@ struct Figure {
 /// Of one light and one delay. What needs to know where people are is missing if the rows don't tell.
 struct DelayCosts {
   double delay_min = 0.0;
-  double lit_h = 0.0;               ///< in all
+  double lit_h = 0.0;  ///< in all
   double switched_on_a_day = 0.0;
-  Figure lit_share;                 ///< of all hours
-  double lit_empty_h = 0.0;         ///< while nobody was there
-  double dark_h = 0.0;              ///< while somebody was there
-  std::int64_t false_offs = 0;      ///< it went off while somebody was there
-  Figure false_offs_an_hour;        ///< of occupied time
-  Figure dark_share;                ///< of occupied time
+  Figure lit_share;             ///< of all hours
+  double lit_empty_h = 0.0;     ///< while nobody was there
+  double dark_h = 0.0;          ///< while somebody was there
+  std::int64_t false_offs = 0;  ///< it went off while somebody was there
+  Figure false_offs_an_hour;    ///< of occupied time
+  Figure dark_share;            ///< of occupied time
   double longest_dark_s = 0.0;
   double mean_wait_s = 0.0, longest_wait_s = 0.0;  ///< from coming into an empty area to light
 };
@@ -101,8 +101,8 @@ struct DelayCosts {
 struct DarkSpell {
   int replicate = 0;
   std::string trial;
-  double from_s = 0.0;      ///< of the run
-  std::string clock;        ///< or no text
+  double from_s = 0.0;  ///< of the run
+  std::string clock;    ///< or no text
   double length_s = 0.0;
   enum class Cause { went_off, stayed_off } cause = Cause::went_off;
 };
@@ -114,10 +114,10 @@ struct LightCosts {
   std::vector<double> rule_delays_min;
   People people = People::known;
   std::int64_t days = 0;
-  double hours = 0.0;     ///< that count: of rows in which all of its sensors are known
+  double hours = 0.0;  ///< that count: of rows in which all of its sensors are known
   double unknown_h = 0.0;
   double occupied_h = 0.0;
-  double span_h = 0.0;     ///< from a day's first person to its last: who switches by hand, and not between
+  double span_h = 0.0;  ///< from a day's first person to its last: who switches by hand, and not between
   double power_w = 0.0;
   std::vector<DelayCosts> by_delay;  ///< in order: every minute up to an hour, and the rule's
   std::vector<DarkSpell> worst;      ///< of the first delay, the longest first; ten at most
@@ -134,7 +134,7 @@ struct Costs {
 
 /// Whether each light is on in a row, by its first delay.
 struct LitRow {
-  std::span<const std::uint8_t> lit;   ///< (n_lights) 0 or 1; 2: its sensors aren't known
+  std::span<const std::uint8_t> lit;     ///< (n_lights) 0 or 1; 2: its sensors aren't known
   std::span<const std::int32_t> people;  ///< (n_lights) of its area, -1: not known
 };
 

@@ -11,6 +11,7 @@ Scenes and scripts are files, or objects of `pirsim.specs`.
 
 from . import counting, errors, specs
 from ._core import __version__, git_revision
+from ._control import LightCosts, control
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
                       write_scene, write_script)
 from ._log import Log, LogLengths, LogPair, LogSensor, read_log
@@ -32,13 +33,14 @@ __all__ = [
     "Action", "Amplifier", "Appear", "Area", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts",
     "CoverageMap", "Detector", "Diagnostic", "Door", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter",
     "Entrance", "Error", "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame",
-    "Grid", "HeldMeeting", "Household", "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile",
-    "InputWarning", "InternalError", "Leave", "Lie", "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh",
-    "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "Place", "PlacementScore", "Placements", "Places",
-    "Poses", "Positions", "Profile", "Rays", "Reconciliation", "Resident", "Result", "Rise", "Scene", "Schedule",
-    "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stand",
-    "Stay", "Summary", "Trace", "Track", "Trial", "Turn", "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where",
-    "Work", "Zone", "__version__", "check", "compile", "counting", "coverage", "data_directory", "dataset", "effects",
-    "errors", "export", "facing", "git_revision", "placements", "preview", "read_log", "read_scene", "read_script",
-    "reconcile", "room", "run", "sensor_model", "specs", "trace", "view", "walk_test", "write_scene", "write_script",
+    "Grid", "HeldMeeting", "Household", "Incident", "IncompleteWarning", "InfeasibleError", "InputError",
+    "InputFile", "InputWarning", "InternalError", "Leave", "Lie", "LightCosts", "Log", "LogLengths", "LogPair",
+    "LogSensor", "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "Place",
+    "PlacementScore", "Placements", "Places", "Poses", "Positions", "Profile", "Rays", "Reconciliation",
+    "Resident", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor",
+    "SensorModel", "SensorSight", "Sit", "Staff", "Stand", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
+    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
+    "control", "counting", "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing",
+    "git_revision", "placements", "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run",
+    "sensor_model", "specs", "trace", "view", "walk_test", "write_scene", "write_script",
 ]

@@ -18,6 +18,7 @@ void add_log(nanobind::module_& module);
 void add_dataset(nanobind::module_& module);
 void add_reconcile(nanobind::module_& module);
 void add_counting(nanobind::module_& module);
+void add_control(nanobind::module_& module);
 
 /// Where sensor models of a scene are looked for.
 struct Folders {

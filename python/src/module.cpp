@@ -15,4 +15,5 @@ NB_MODULE(_core, module) {
   add_dataset(module);
   add_reconcile(module);
   add_counting(module);
+  add_control(module);
 }

@@ -54,13 +54,13 @@ control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue
       remarks.push_back({Severity::warning, {scene.name}, "area '" + light.id + "' has no sensor, and so no light"});
     }
   }
-  if (rule.lights.empty()) throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
+  if (rule.lights.empty())
+    throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
   return rule;
 }
 
 control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& remarks) {
-  control::RuleSpec rule =
-      options.rule.empty() ? rule_of_scene(options, remarks) : control::read_rule(options.rule);
+  control::RuleSpec rule = options.rule.empty() ? rule_of_scene(options, remarks) : control::read_rule(options.rule);
   for (control::LightSpec& light : rule.lights) {
     if (!options.delays_min.empty()) light.delays_min = options.delays_min;
   }
@@ -198,25 +198,31 @@ void add_control_command(CLI::App& app) {
   const auto options = std::make_shared<ControlOptions>();
   command.add_option("rows", options->rows, "rows of runs, or a dataset's folder")->option_text("ROWS...");
   offer_log(command, options->log);
-  command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")->option_text("SECONDS");
+  command.get_option("--log")->required(false);
+  command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")
+      ->option_text("SECONDS");
   offer_input_file(command, "--rule", options->rule, "lights, their sensors and delays, YAML (default: any sensor)");
-  command.add_option("--delay", options->delays_min, "instead of the rule's; several: the first is the one that counts")
+  command
+      .add_option("--delay", options->delays_min, "instead of the rule's; several: the first is the one that counts")
       ->option_text("MINUTES...")
       ->check(CLI::Range(0.0, 1440.0));
   Inputs& inputs = options->inputs;
   offer_input_file(command, "--scene", inputs.scene, "without a rule: a light for each of its areas; .gltf or .glb");
   offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
-  offer_input_file(command, "--script", inputs.script, "with --scene: what made the rows, for links to the worst moments");
+  offer_input_file(command, "--script", inputs.script,
+                   "with --scene: what made the rows, for links to the worst moments");
   command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);
   offer_output(command, options->output, "FILE", "costs by light and delay, .csv");
   command.add_option("--report", options->report, "a page with the curves, the lit times and the worst moments, .html")
       ->option_text("FILE");
-  command.add_option("--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst")->option_text("FILE");
+  command.add_option("--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
   command.add_option("--schedule", options->schedule, "shares of time lit and present, for EnergyPlus, .csv")
       ->option_text("FILE");
-  command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")->option_text("MINUTES");
+  command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")
+      ->option_text("MINUTES");
   offer_quiet(command, inputs.verbosity);
   command.callback([options] { control_light(*options); });
 }

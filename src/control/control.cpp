@@ -13,7 +13,7 @@
 namespace pirsim::control {
 namespace {
 
-constexpr int curve_min = 60;         ///< delays of the curve, minute by minute
+constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
 constexpr std::uint8_t unknown_bit = 2;
 
@@ -43,7 +43,7 @@ std::optional<std::size_t> find(const Names& names, const std::string& name, con
   return std::nullopt;
 }
 
-Columns columns_of(const LightSpec& light, const ColumnOwners& owners, Diagnostics& faults) {
+Columns columns_for(const LightSpec& light, const ColumnOwners& owners, Diagnostics& faults) {
   Columns columns;
   for (const std::string& sensor : light.sensors) {
     if (const auto at = find(owners.sensors, sensor, "sensor", light, faults)) columns.sensors.push_back(*at);
@@ -79,7 +79,11 @@ bool is_between(double hour, double from_h, double to_h) {
 class Light {
  public:
   Light(const LightSpec& spec, Columns columns, double window_s)
-      : spec_(spec), columns_(std::move(columns)), window_s_(window_s), rule_(spec, window_s), delays_min_(delays_of(spec)) {
+      : spec_(spec),
+        columns_(std::move(columns)),
+        window_s_(window_s),
+        rule_(spec, window_s),
+        delays_min_(delays_of(spec)) {
     for (const double delay_min : delays_min_) delay_rows_.push_back(rows_of(60.0 * delay_min));
     if (spec.night) night_rows_ = rows_of(60.0 * spec.night->delay_min);
     if (spec.together) together_rows_ = rows_of(spec.together->within_s);
@@ -202,14 +206,16 @@ class Light {
       return;
     }
     if (!spell_) {
-      spell_ = DarkSpell{row.replicate, row.trial, row.time_s - window_s_, row.clock, 0.0,
-                         spell_follows_light_ ? DarkSpell::Cause::went_off : DarkSpell::Cause::stayed_off};
+      spell_ = DarkSpell{
+          row.replicate, row.trial, row.time_s - window_s_,
+          row.clock,     0.0,       spell_follows_light_ ? DarkSpell::Cause::went_off : DarkSpell::Cause::stayed_off};
     }
     spell_->length_s += window_s_;
   }
   void end_spell() {
     if (!spell_) return;
-    const auto at = std::ranges::find_if(worst_, [&](const DarkSpell& other) { return other.length_s < spell_->length_s; });
+    const auto at =
+        std::ranges::find_if(worst_, [&](const DarkSpell& other) { return other.length_s < spell_->length_s; });
     worst_.insert(at, *spell_);
     if (worst_.size() > most_worst) worst_.pop_back();
     spell_.reset();
@@ -319,7 +325,7 @@ Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People pe
   Diagnostics faults;
   if (!(window_s > 0.0)) faults.error({state_->rule.name}, "expected rows of more than 0 s");
   for (const LightSpec& light : state_->rule.lights) {
-    Columns own = columns_of(light, columns, faults);
+    Columns own = columns_for(light, columns, faults);
     if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s);
   }
   faults.throw_if_errors();
@@ -354,8 +360,9 @@ Costs Control::finish() const {
   for (const LightSpec& light : state_->rule.lights) {
     const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
     if (wants_clock && !state_->has_clock) {
-      costs.remarks.push_back({Severity::warning, light.where,
-                               "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
+      costs.remarks.push_back(
+          {Severity::warning, light.where,
+           "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
     }
   }
   return costs;

@@ -36,7 +36,7 @@ class LightSwitch {
   [[nodiscard]] bool goes_on(const SwitchRule& rule, const Cue& cue) noexcept;
 
   bool lit_ = false;
-  bool latched_ = false;           ///< by motion behind a shut door
+  bool latched_ = false;  ///< by motion behind a shut door
   std::int64_t row_ = 0;
   std::int64_t since_ = 0;         ///< lit since this row, or dark
   std::int64_t counted_from_ = 0;  ///< of the delay

@@ -15,12 +15,15 @@ std::string minutes(double delay_min) { return shortest_number(delay_min) + " mi
 std::string share(double value) { return fixed(100.0 * value, value < 0.1 ? 1 : 0) + " %"; }
 std::string range(const Figure& figure, double scale, int digits) {
   if (!figure.over_days) return "";
-  return " (" + fixed(scale * figure.over_days->low, digits) + " to " + fixed(scale * figure.over_days->high, digits) + ")";
+  return " (" + fixed(scale * figure.over_days->low, digits) + " to " + fixed(scale * figure.over_days->high, digits) +
+         ")";
 }
 std::string time(double seconds) {
   return seconds < 120.0 ? fixed(seconds, 0) + " s" : fixed(seconds / 60.0, seconds < 6000.0 ? 1 : 0) + " min";
 }
-double a_day(const LightCosts& light, double hours) { return hours / std::max<double>(1.0, static_cast<double>(light.days)); }
+double a_day(const LightCosts& light, double hours) {
+  return hours / std::max<double>(1.0, static_cast<double>(light.days));
+}
 
 /// Its delays that a table tells.
 std::vector<double> told_delays(const LightCosts& light) {
@@ -109,10 +112,9 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
     return point;
   };
   if (light.people == People::known) {
-    charts.emplace_back(chart(light, "What people pay", "times it goes off on somebody, an occupied hour",
-                              {curve(light, light.id, [&](const DelayCosts& at) {
-                                return of(at, at.false_offs_an_hour, 1.0);
-                              })}));
+    charts.emplace_back(
+        chart(light, "What people pay", "times it goes off on somebody, an occupied hour",
+              {curve(light, light.id, [&](const DelayCosts& at) { return of(at, at.false_offs_an_hour, 1.0); })}));
   }
   const auto flat = [&](const std::string& name, double hours) {
     return curve(light, name, [&, hours](const DelayCosts& at) {
@@ -157,11 +159,11 @@ io::ReportSection worst_section(const LightCosts& light, const std::string& view
   section.paragraphs = {"With a delay of " + minutes(light.rule_delays_min.front()) + "."};
   io::Table table{{"run", "from", "for", "what happened", "look at it"}, {}};
   for (const DarkSpell& spell : light.worst) {
-    table.rows.push_back({std::to_string(spell.replicate) + (spell.trial.empty() ? "" : ", trial " + spell.trial),
-                          spell.clock.empty() ? fixed(spell.from_s, 0) + " s" : spell.clock, time(spell.length_s),
-                          spell.cause == DarkSpell::Cause::went_off ? "it went off on somebody"
-                                                                    : "somebody came, and it stayed off",
-                          command(spell, view)});
+    table.rows.push_back(
+        {std::to_string(spell.replicate) + (spell.trial.empty() ? "" : ", trial " + spell.trial),
+         spell.clock.empty() ? fixed(spell.from_s, 0) + " s" : spell.clock, time(spell.length_s),
+         spell.cause == DarkSpell::Cause::went_off ? "it went off on somebody" : "somebody came, and it stayed off",
+         command(spell, view)});
   }
   section.tables.push_back(std::move(table));
   return section;
@@ -192,8 +194,8 @@ LitDays::LitDays(const RuleSpec& rule, double window_s) : window_s_(window_s) {
 void LitDays::add(const Sample& row, const LitRow& lit) {
   constexpr std::size_t to_date = 10, to_time = 11;
   has_clock_ = has_clock_ || !row.clock.empty();
-  const std::string name = has_clock_ ? row.clock.substr(0, to_date)
-                                      : "run " + std::to_string(row.replicate) + ", " + row.trial;
+  const std::string name =
+      has_clock_ ? row.clock.substr(0, to_date) : "run " + std::to_string(row.replicate) + ", " + row.trial;
   if (days_.empty() || days_.back().first != name) {
     if (days_.size() >= most_days) return;
     days_.push_back({name, {std::vector<double>(n_bins * names_.size()), std::vector<double>(n_bins * names_.size())}});
@@ -248,7 +250,8 @@ io::DaysChart LitDays::chart() const {
 io::Report control_page(const Costs& costs, const LitDays& days, const std::string& view) {
   io::Report report;
   report.title = "Light: " + costs.rule;
-  for (const LightCosts& light : costs.lights) report.finding += (report.finding.empty() ? "" : " ") + finding_of(light);
+  for (const LightCosts& light : costs.lights)
+    report.finding += (report.finding.empty() ? "" : " ") + finding_of(light);
   report.paragraphs = {
       "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
@@ -256,17 +259,18 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   for (const LightCosts& light : costs.lights) {
     io::ReportSection section;
     section.heading = light.id;
-    section.paragraphs = {counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
-                          (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
-                          (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") +
-                          "."};
+    section.paragraphs = {
+        counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
+        (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
+        (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
     report.sections.push_back(std::move(section));
   }
   io::ReportSection lit;
   lit.heading = "The lit time, day by day";
-  lit.paragraphs = {"The first days, each light by its first delay. The darker the line, the more of two minutes is lit."};
+  lit.paragraphs = {
+      "The first days, each light by its first delay. The darker the line, the more of two minutes is lit."};
   lit.charts.emplace_back(days.chart());
   report.sections.push_back(std::move(lit));
   for (const LightCosts& light : costs.lights) {

@@ -11,8 +11,9 @@ namespace {
 /// Of one of the tables of rows, and no sensor's.
 bool has_a_meaning(std::string_view name) {
   const auto is_of = [&](const auto& columns) {
-    return std::ranges::any_of(
-        columns, [&](const auto& column) { return column.each == nullptr && (column.name == name || column.alias == name); });
+    return std::ranges::any_of(columns, [&](const auto& column) {
+      return column.each == nullptr && (column.name == name || column.alias == name);
+    });
   };
   return is_of(columns_of<Sample>()) || is_of(columns_of<DayLine>());
 }
@@ -70,14 +71,15 @@ Number RowFile::number(std::size_t column, Number if_empty) const {
   const auto value = io::parse_number<Number>(text);
   if (value) return *value;
   const auto at = static_cast<int>(text.data() - fields_.front().data()) + 1;
-  throw Error(ErrorCode::input, lines_.where(at), names_[column] + ": expected a number, got '" + std::string(text) + "'");
+  throw Error(ErrorCode::input, lines_.where(at),
+              names_[column] + ": expected a number, got '" + std::string(text) + "'");
 }
 
 bool RowFile::next(Sample& row) {
   if (!split()) return false;
   if (fields_.size() != names_.size()) {
-    throw Error(ErrorCode::input, lines_.where(), "expected " + std::to_string(names_.size()) + " fields, got " +
-                                                      std::to_string(fields_.size()));
+    throw Error(ErrorCode::input, lines_.where(),
+                "expected " + std::to_string(names_.size()) + " fields, got " + std::to_string(fields_.size()));
   }
   row.replicate = number<int>(*run_, 0);
   row.trial = fields_[*trial_];
@@ -91,7 +93,9 @@ bool RowFile::next(Sample& row) {
   row.bits.resize(sensors_.size());
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     const std::string_view bit = fields_[sensors_[i]];
-    row.bits[i] = bit == "1" ? 1 : bit == "0" || bit.empty() ? 0 : static_cast<std::uint8_t>(number<int>(sensors_[i], 0) != 0);
+    row.bits[i] = bit == "1"                  ? 1
+                  : bit == "0" || bit.empty() ? 0
+                                              : static_cast<std::uint8_t>(number<int>(sensors_[i], 0) != 0);
   }
   return true;
 }

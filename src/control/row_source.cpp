@@ -10,7 +10,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_table(const fs::path& file) {
-  return std::ranges::any_of(io::table_endings(), [&](const std::string& ending) { return file.string().ends_with(ending); });
+  return std::ranges::any_of(io::table_endings(),
+                             [&](const std::string& ending) { return file.string().ends_with(ending); });
 }
 
 /// Of a dataset: those below `rows`.
@@ -22,7 +23,8 @@ std::vector<fs::path> tables_in(const fs::path& folder) {
       if (entry.is_regular_file() && is_table(entry.path())) files.push_back(entry.path());
     }
   }
-  if (files.empty()) throw Error(ErrorCode::input, {folder.string()}, "no dataset: there are no tables in its folder `rows`");
+  if (files.empty())
+    throw Error(ErrorCode::input, {folder.string()}, "no dataset: there are no tables in its folder `rows`");
   std::ranges::sort(files);
   return files;
 }

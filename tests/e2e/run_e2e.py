@@ -53,7 +53,7 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
-          ("count",): ("counter.json", "--log", "nowhere.csv"),
+          ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("nowhere.csv",),
           ("room",): ("-o", "room.gltf"), ("home",): ("-o", "flat.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}

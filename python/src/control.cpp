@@ -1,0 +1,65 @@
+// Light that sensors switch.
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <pirsim/control.hpp>
+
+#include "arrays.hpp"
+#include "attend.hpp"
+#include "bindings.hpp"
+#include "schema/clock.hpp"
+
+namespace pirsim::python {
+namespace {
+
+namespace nb = nanobind;
+template <typename T, int n>
+using Array = nb::ndarray<const T, nb::ndim<n>, nb::c_contig, nb::device::cpu>;
+
+template <typename To, typename From>
+void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) {
+  const From* begin = from.data() + row * from.shape(1);
+  to.assign(begin, begin + from.shape(1));
+}
+
+/// file, text: of the rule; the text counts where there is no file. Columns of rows, one after the other; clock_s: local time at each row's end, since 1970. Returns the costs as CSV, the
+/// lights, and (row, light) 1 where it is lit.
+nb::tuple control_light(const std::string& file, const std::string& text, std::vector<std::string> sensors,
+                        std::vector<std::string> areas, std::vector<std::string> doors, double window_s,
+                        Array<std::int32_t, 1> run, Array<double, 1> time_s,
+                        std::optional<Array<std::int64_t, 1>> clock_s, Array<std::int32_t, 1> people,
+                        Array<std::int32_t, 2> people_of_areas, Array<std::uint8_t, 2> door_open,
+                        Array<std::uint8_t, 2> bits) {
+  std::vector<std::uint8_t> lit;
+  std::vector<std::string> lights;
+  std::string costs;
+  attend(nb::none(), [&](Job&) {
+    const control::RuleSpec spec = file.empty() ? control::parse_rule(text, "rule") : control::read_rule(file);
+    for (const control::LightSpec& light : spec.lights) lights.push_back(light.id);
+    control::Control control(spec, {std::move(sensors), std::move(areas), std::move(doors)}, window_s);
+    Sample row;
+    for (std::size_t i = 0; i < bits.shape(0); ++i) {
+      row.replicate = run(i);
+      row.time_s = time_s(i);
+      constexpr std::int64_t day_s = 86400;
+      if (clock_s) row.clock = clock_text((*clock_s)(i) / day_s, static_cast<double>((*clock_s)(i) % day_s));
+      row.people = people(i);
+      copy_row(people_of_areas, i, row.people_of_areas);
+      copy_row(door_open, i, row.doors);
+      copy_row(bits, i, row.bits);
+      const control::LitRow now = control.add(row);
+      lit.insert(lit.end(), now.lit.begin(), now.lit.end());
+    }
+    costs = control::to_csv(control.finish());
+  });
+  const std::size_t n_lights = lights.size();
+  return nb::make_tuple(costs, lights, to_numpy(std::move(lit), {bits.shape(0), n_lights}));
+}
+
+}  // namespace
+
+void add_control(nb::module_& module) { module.def("control_light", &control_light); }
+
+}  // namespace pirsim::python
