@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <utility>
 
@@ -40,13 +41,12 @@ std::string energy(const LightCosts& light, double hours) {
 
 io::Table table_of(const LightCosts& light) {
   const bool knows = light.people == People::known;
-  io::Table table{{"delay", "lit, h a day", "switched on a day"}, {}};
+  io::Table table{{"delay", "lit, h/day", "on, 1/day"}, {}};
   if (knows) {
-    table.headings.insert(table.headings.begin() + 1,
-                          {"goes off on somebody, an occupied hour", "dark, % of occupied time", "longest dark"});
-    table.headings.insert(table.headings.end(), {"lit and empty, h a day", "until light, mean"});
+    table.headings.insert(table.headings.begin() + 1, {"off on somebody, 1/h", "dark, %", "longest dark"});
+    table.headings.insert(table.headings.end(), {"empty, h/day", "wait"});
   }
-  if (light.power_w > 0.0) table.headings.push_back("kWh a day");
+  if (light.power_w > 0.0) table.headings.push_back("kWh/day");
   for (const double delay : told_delays(light)) {
     const DelayCosts& at = light.at(delay);
     std::vector<std::string> row{minutes(delay), fixed(a_day(light, at.lit_h), 2), fixed(at.switched_on_a_day, 1)};
@@ -70,21 +70,23 @@ io::Table table_of(const LightCosts& light) {
   };
   add("always on", light.hours, light.hours - light.occupied_h);
   if (knows) {
-    add("by hand, from the day's first person to its last", light.span_h, light.span_h - light.occupied_h);
-    add("while somebody is there", light.occupied_h, 0.0);
+    add("by hand", light.span_h, light.span_h - light.occupied_h);
+    add("ideal", light.occupied_h, 0.0);
   }
   return table;
 }
 
 using Line = io::LineChart::Line;
 
+/// Without a delay nearly every second is dark, which would hide the rest.
 template <typename Value>
 Line curve(const LightCosts& light, const std::string& name, Value value) {
-  constexpr double longest_min = 60.0;
+  constexpr double shortest_min = 1.0, longest_min = 60.0;
   Line line{name, {}};
   for (const DelayCosts& at : light.by_delay) {
-    if (at.delay_min <= longest_min) line.points.push_back(value(at));
+    if (at.delay_min >= shortest_min && at.delay_min <= longest_min) line.points.push_back(value(at));
   }
+
   return line;
 }
 
@@ -128,8 +130,8 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
     lines.push_back(curve(light, "lit and empty", [&](const DelayCosts& at) {
       return io::LineChart::Point{at.delay_min, a_day(light, at.lit_empty_h), {}, {}};
     }));
-    lines.push_back(flat("by hand, first to last", light.span_h));
-    lines.push_back(flat("while somebody is there", light.occupied_h));
+    lines.push_back(flat("by hand", light.span_h));
+    lines.push_back(flat("ideal", light.occupied_h));
   }
   charts.emplace_back(chart(light, "What the delay costs in light", "hours a day", std::move(lines)));
   return charts;
@@ -169,20 +171,77 @@ io::ReportSection worst_section(const LightCosts& light, const std::string& view
   return section;
 }
 
-std::string finding_of(const LightCosts& light) {
-  const double delay = light.rule_delays_min.front();
-  const DelayCosts& at = light.at(delay);
-  std::string text = light.id + ", with a delay of " + minutes(delay) + ": ";
-  if (light.people == People::known) {
-    text += "it goes off on somebody " + fixed(at.false_offs_an_hour.value, 2) + " times an occupied hour" +
-            range(at.false_offs_an_hour, 1.0, 2) + ", people are in the dark for " + share(at.dark_share.value) +
-            " of the time that they are there, and it is lit for nobody " + fixed(a_day(light, at.lit_empty_h), 2) +
-            " h a day.";
-  } else {
-    text += "it is lit for " + fixed(a_day(light, at.lit_h), 2) +
-            " h a day; the rows don't say when somebody is there, so that nobody knows who was left in the dark.";
+/// Of one light, or of several together, by their first delays.
+struct Sums {
+  double occupied_h = 0.0, dark_h = 0.0, lit_h = 0.0, lit_empty_h = 0.0, days = 0.0;
+  std::int64_t false_offs = 0;
+
+  void add(const LightCosts& light) {
+    const DelayCosts& at = light.at(light.rule_delays_min.front());
+    occupied_h += light.occupied_h;
+    dark_h += at.dark_h;
+    lit_h += at.lit_h;
+    lit_empty_h += at.lit_empty_h;
+    false_offs += at.false_offs;
+    days = std::max(days, static_cast<double>(light.days));
   }
-  return text;
+  [[nodiscard]] double offs_an_hour() const {
+    return occupied_h > 0.0 ? static_cast<double>(false_offs) / occupied_h : 0.0;
+  }
+  [[nodiscard]] double dark_share() const { return occupied_h > 0.0 ? dark_h / occupied_h : 0.0; }
+  [[nodiscard]] double a_day(double hours) const { return hours / std::max(1.0, days); }
+};
+
+bool know_people(const Costs& costs) {
+  return std::ranges::all_of(costs.lights, [](const LightCosts& light) { return light.people == People::known; });
+}
+
+std::string with_which_delay(const Costs& costs) {
+  const double first = costs.lights.front().rule_delays_min.front();
+  const bool all_alike = std::ranges::all_of(
+      costs.lights, [&](const LightCosts& light) { return light.rule_delays_min.front() == first; });
+  return all_alike ? "With a delay of " + minutes(first) : "With the rule's delays";
+}
+
+std::string finding_of(const Costs& costs) {
+  Sums sums;
+  for (const LightCosts& light : costs.lights) sums.add(light);
+  const bool is_one = costs.lights.size() == 1;
+  const std::string lit_h = fixed(sums.a_day(sums.lit_h), 2);
+  std::string text = with_which_delay(costs);
+  if (!know_people(costs)) {
+    return text + (is_one ? ", the light is on for " + lit_h + " h" : ", lights are on for " + lit_h + " light-hours") +
+           " a day. The rows don't say when somebody is there, so who was left in the dark isn't known.";
+  }
+  if (is_one) {
+    const LightCosts& light = costs.lights.front();
+    text += ", the light goes off on somebody " + fixed(sums.offs_an_hour(), 2) + " times an occupied hour" +
+            range(light.at(light.rule_delays_min.front()).false_offs_an_hour, 1.0, 2);
+  } else {
+    text += ", a light goes off on somebody " + fixed(sums.offs_an_hour(), 2) +
+            " times in every hour that its area is occupied";
+  }
+  return text + ". People are in the dark for " + share(sums.dark_share()) + " of that time. Of " + lit_h +
+         (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.a_day(sums.lit_empty_h), 2) +
+         " are lit for nobody.";
+}
+
+/// A row a light, and one of all.
+io::Table overview(const Costs& costs) {
+  io::Table table{{"light", "delay", "off on somebody, 1/h", "dark, %", "lit, h/day", "empty, h/day"}, {}};
+  const auto add = [&](const std::string& name, const std::string& delay, const Sums& sums) {
+    table.rows.push_back({name, delay, fixed(sums.offs_an_hour(), 2), fixed(100.0 * sums.dark_share(), 1),
+                          fixed(sums.a_day(sums.lit_h), 2), fixed(sums.a_day(sums.lit_empty_h), 2)});
+  };
+  Sums all;
+  for (const LightCosts& light : costs.lights) {
+    Sums one;
+    one.add(light);
+    all.add(light);
+    add(light.id, minutes(light.rule_delays_min.front()), one);
+  }
+  add("all", "", all);
+  return table;
 }
 
 }  // namespace
@@ -250,12 +309,13 @@ io::DaysChart LitDays::chart() const {
 io::Report control_page(const Costs& costs, const LitDays& days, const std::string& view) {
   io::Report report;
   report.title = "Light: " + costs.rule;
-  for (const LightCosts& light : costs.lights)
-    report.finding += (report.finding.empty() ? "" : " ") + finding_of(light);
+  report.finding = finding_of(costs);
   report.paragraphs = {
       "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
   for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
+  if (costs.lights.size() > 1 && know_people(costs))
+    report.sections.push_back({"All lights", {}, {overview(costs)}, {}});
   for (const LightCosts& light : costs.lights) {
     io::ReportSection section;
     section.heading = light.id;
@@ -263,8 +323,17 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
+    if (light.people == People::known) {
+      section.paragraphs.emplace_back(
+          "1/h: how often it goes off on somebody, an occupied hour. Dark: share of occupied time. Empty: lit while "
+          "nobody is there. Wait: from coming in to light, on average. By hand: lit from the day's first person to its "
+          "last. Ideal: lit while somebody is there. In parentheses: the middle 90 % of what days drawn with "
+          "replacement "
+          "give.");
+    }
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
+
     report.sections.push_back(std::move(section));
   }
   io::ReportSection lit;
@@ -281,7 +350,13 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
 
 std::string to_text(const Costs& costs) {
   std::ostringstream text;
-  for (const LightCosts& light : costs.lights) text << finding_of(light) << '\n';
+  text << finding_of(costs) << '\n';
+  if (costs.lights.size() < 2 || !know_people(costs)) return text.str();
+  for (const auto& row : overview(costs).rows) {
+    text << "  " << std::left << std::setw(16) << row[0] << std::setw(8) << row[1] << "off on somebody " << row[2]
+         << " an occupied hour, dark " << row[3] << " %, lit " << row[4] << " h a day, " << row[5]
+         << " of them empty\n";
+  }
   return text.str();
 }
 

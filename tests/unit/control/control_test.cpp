@@ -45,9 +45,7 @@ std::string lit(const LightSpec& light, double delay_min, const std::string& mot
   return result;
 }
 
-RuleSpec parsed(const std::string& lights) {
-  return parse_rule("pirsim_control: 1\nlights:\n" + lights, "rule.yaml");
-}
+RuleSpec parsed(const std::string& lights) { return parse_rule("pirsim_control: 1\nlights:\n" + lights, "rule.yaml"); }
 
 }  // namespace
 
@@ -134,7 +132,8 @@ TEST_CASE("false-offs and dark time of memoryless motion are those of the closed
   Control control(rule_with({}, {10.0}), {{"PIR"}, {}, {}}, window_s);
   std::vector<DelayCosts> before;
   for (int day = 0; day < n_days; ++day) {
-    for (int i = 0; i < rows_a_day; ++i) control.add(row_of(day * rows_a_day + i, moves(random), 1, window_s), std::to_string(day));
+    for (int i = 0; i < rows_a_day; ++i)
+      control.add(row_of(day * rows_a_day + i, moves(random), 1, window_s), std::to_string(day));
   }
   const LightCosts costs = control.finish().lights.front();
   CHECK(costs.days == n_days);
@@ -143,7 +142,9 @@ TEST_CASE("false-offs and dark time of memoryless motion are those of the closed
     const auto dark = [&](double minutes) { return std::pow(1.0 - p, 6.0 * minutes + 1.0); };
     const auto offs_an_hour = [&](double minutes) { return 360.0 * p * dark(minutes); };
     // 90 % of the drawn days are 1.645 standard errors to either side.
-    const auto error = [](const Figure& figure) { return (figure.over_days->high - figure.over_days->low) / (2.0 * 1.645); };
+    const auto error = [](const Figure& figure) {
+      return (figure.over_days->high - figure.over_days->low) / (2.0 * 1.645);
+    };
     CHECK(std::abs(at.dark_share.value - dark(delay_min)) < 3.0 * error(at.dark_share));
     CHECK(std::abs(at.false_offs_an_hour.value - offs_an_hour(delay_min)) < 3.0 * error(at.false_offs_an_hour));
     // Two minutes of another delay must be told.
@@ -187,7 +188,8 @@ TEST_CASE("several sensors, areas, unknown readings and new runs") {
 TEST_CASE("rules are read with their places, and what can't be is refused") {
   const RuleSpec rule = parsed(
       "  - {area: office, sensors: [A, B], together: {sensors: 2}, delay_min: [5, 15], manual: {grace_s: 30},\n"
-      "     timer: runs_out, least_on_min: 2, door: front, night: {from: \"21:00\", delay_min: 1}, from: \"06:00\", power_w: 80}\n");
+      "     timer: runs_out, least_on_min: 2, door: front, night: {from: \"21:00\", delay_min: 1}, from: \"06:00\", "
+      "power_w: 80}\n");
   REQUIRE(rule.lights.size() == 1);
   const LightSpec& light = rule.lights[0];
   CHECK(light.id == "office");
@@ -228,12 +230,15 @@ TEST_CASE("a schedule has whole days, with the shares of each step") {
   for (int i = 0; i < 60; ++i) {
     Sample row = row_of(i, i < 15, i < 45 ? 1 : 0);
     const int end_min = 23 * 60 + i + 1;  // the last one ends at midnight
-    row.clock = end_min == 1440 ? "2026-03-03T00:00:00" : "2026-03-02T23:" + std::string(i + 1 < 10 ? "0" : "") + std::to_string(i + 1) + ":00";
+    row.clock = end_min == 1440 ? "2026-03-03T00:00:00"
+                                : "2026-03-02T23:" + std::string(i + 1 < 10 ? "0" : "") + std::to_string(i + 1) + ":00";
     schedule.add(row, control.add(row));
   }
   std::ostringstream text;
   schedule.write(text);
   CHECK(schedule.n_days() == 1);
-  CHECK_THAT(text.str(), contains("2026-03-02T22:30,0.0000,0.0000\n2026-03-02T23:00,0.5000,1.0000\n2026-03-02T23:30,0.0000,0.5000\n"));
+  CHECK_THAT(
+      text.str(),
+      contains("2026-03-02T22:30,0.0000,0.0000\n2026-03-02T23:00,0.5000,1.0000\n2026-03-02T23:30,0.0000,0.5000\n"));
   CHECK(std::ranges::count(text.str(), '\n') == 49);
 }
