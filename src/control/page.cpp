@@ -41,7 +41,7 @@ std::string energy(const LightCosts& light, double hours) {
 
 io::Table table_of(const LightCosts& light) {
   const bool knows = light.people == People::known;
-  io::Table table{{"delay", "lit, h/day", "on, 1/day"}, {}};
+  io::Table table{{"delay, min", "lit, h/day", "on, 1/day"}, {}};
   if (knows) {
     table.headings.insert(table.headings.begin() + 1, {"off on somebody, 1/h", "dark, %", "longest dark"});
     table.headings.insert(table.headings.end(), {"empty, h/day", "wait"});
@@ -49,7 +49,8 @@ io::Table table_of(const LightCosts& light) {
   if (light.power_w > 0.0) table.headings.push_back("kWh/day");
   for (const double delay : told_delays(light)) {
     const DelayCosts& at = light.at(delay);
-    std::vector<std::string> row{minutes(delay), fixed(a_day(light, at.lit_h), 2), fixed(at.switched_on_a_day, 1)};
+    std::vector<std::string> row{shortest_number(delay), fixed(a_day(light, at.lit_h), 2),
+                                 fixed(at.switched_on_a_day, 1)};
     if (knows) {
       row.insert(row.begin() + 1,
                  {fixed(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
@@ -313,6 +314,15 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   report.paragraphs = {
       "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
+  if (know_people(costs)) {
+    report.paragraphs.emplace_back(
+        "In the tables, 1/h: how often it goes off on somebody, an occupied hour. Dark: share of occupied time. Empty: "
+        "lit "
+        "while nobody is there. Wait: from coming in to light, on average. By hand: lit from the day's first person to "
+        "its "
+        "last. Ideal: lit while somebody is there. In parentheses: the middle 90 % of what days drawn with replacement "
+        "give.");
+  }
   for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
   if (costs.lights.size() > 1 && know_people(costs))
     report.sections.push_back({"All lights", {}, {overview(costs)}, {}});
@@ -323,14 +333,6 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
-    if (light.people == People::known) {
-      section.paragraphs.emplace_back(
-          "1/h: how often it goes off on somebody, an occupied hour. Dark: share of occupied time. Empty: lit while "
-          "nobody is there. Wait: from coming in to light, on average. By hand: lit from the day's first person to its "
-          "last. Ideal: lit while somebody is there. In parentheses: the middle 90 % of what days drawn with "
-          "replacement "
-          "give.");
-    }
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
 

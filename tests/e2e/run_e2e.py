@@ -303,6 +303,77 @@ class Days(unittest.TestCase):
             self.assertIn(told, pirsim("day", *room, "--staff", 2, option, value, code=2).stderr)
 
 
+class Light(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def table(self, name):
+        return rows((self.folder / name).read_text())
+
+    def test_areas_have_lights_of_their_own_whose_times_add_up(self):
+        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
+        told = pirsim("control", self.folder / "rows.csv", "--scene", DATA / "rooms" / "two_rooms.gltf", "--delay", 1, 5,
+                      "-o", self.folder / "costs.csv", "--light", self.folder / "lit.csv", "--report",
+                      self.folder / "light.html")
+        self.assertIn("With a delay of 1 min, a light goes off on somebody", told.stdout)
+        costs, lit, given = self.table("costs.csv"), self.table("lit.csv"), self.table("rows.csv")
+        self.assertEqual({row["light"] for row in costs}, {"living_room", "bedroom"})
+        self.assertEqual(len(lit), len(given))
+        for light in ("living_room", "bedroom"):
+            before = 0.0
+            for row in (row for row in costs if row["light"] == light):
+                hours = {key: float(value) for key, value in row.items() if key.endswith("_h")}
+                self.assertAlmostEqual(hours["lit_h"] - hours["lit_empty_h"] + hours["dark_h"], hours["occupied_h"], 5)
+                self.assertGreaterEqual(hours["lit_h"], before)  # a longer delay is never less light
+                before = hours["lit_h"]
+            of_one = next(row for row in costs if row["light"] == light and row["delay_min"] == "1")
+            self.assertAlmostEqual(sum(row["lit_" + light] == "1" for row in lit) / 3600, float(of_one["lit_h"]), 5)
+            self.assertEqual([row["people_" + light] for row in lit], [row["people_" + light] for row in given])
+        self.assertIn("living_room", (self.folder / "light.html").read_text())
+
+    def test_a_dataset_and_a_log_have_days(self):
+        for room in (1, 2):
+            for day in (1, 2, 3):
+                folder = self.folder / "set" / "rows" / f"room_{room:04}"
+                folder.mkdir(parents=True, exist_ok=True)
+                lines = [f"{room},{day},{30 * (i + 1)},2026-03-0{day}T10:{(30 * (i + 1)) // 60:02}:{30 * (i + 1) % 60:02},"
+                         f"occupied,1,0,0,{int(i == 0)},{'' if room == 2 else 0}" for i in range(60)]
+                write(folder, f"day_0{day}.csv", "room,day,time_s,time,phase,people,arrivals,departures,PIR1,PIR2\n" + "\n".join(lines) + "\n")
+        pirsim("control", self.folder / "set", "--delay", 10, "-q", "-o", self.folder / "costs.csv", "--schedule",
+               self.folder / "light.csv")
+        ten = next(row for row in self.table("costs.csv") if row["delay_min"] == "10")
+        self.assertEqual((ten["days"], ten["false_offs"]), ("6", "6"))
+        self.assertAlmostEqual(float(ten["lit_h"]), 6 * 21 * 30 / 3600)
+        self.assertEqual(ten["dark_share_low"], ten["dark_share_high"])  # all days are alike
+        self.assertEqual(len(self.table("light.csv")), 3 * 96)
+        log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
+        told = pirsim("control", "--log", log, "--delay", 5, "-o", self.folder / "log_costs.csv")
+        self.assertIn("isn't known", told.stdout)
+        self.assertIn("warning: the rows have no people", told.stderr)
+        five = next(row for row in self.table("log_costs.csv") if row["delay_min"] == "5")
+        self.assertAlmostEqual(float(five["lit_h"]), 6 / 60)
+        self.assertEqual(five["dark_h"], "")
+
+    def test_what_are_no_rows_is_told_with_its_place(self):
+        good = write(self.folder, "rows.csv", "replicate,trial,time_s,phase,people,PIR1\n1,a,1,x,0,1\n1,a,2,x,0,0\n")
+        for name, text, told in (("log.csv", "time,PIR1\n2026-03-02T10:00:00,1\n", "log.csv:1:1: error: these aren't rows"),
+                                 ("bad.csv", good.read_text() + "1,a,3,x,one,0\n", "bad.csv:4:9: error: people: expected a number, got 'one'"),
+                                 ("cut.csv", good.read_text() + "1,a,3\n", "cut.csv:4:1: error: expected 6 fields, got 3"),
+                                 ("empty.csv", "", "empty.csv:1:1: error: the file is empty")):
+            result = pirsim("control", write(self.folder, name, text), code=3)
+            self.assertIn(told, result.stderr)
+        other = write(self.folder, "other.csv", good.read_text().replace("PIR1", "PIR2"))
+        self.assertIn("aren't those of", pirsim("control", good, other, code=3).stderr)
+        self.assertIn("no dataset", pirsim("control", self.folder, code=3).stderr)
+        self.assertIn("say which rows", pirsim("control", code=2).stderr)
+        self.assertIn("say which rows", pirsim("control", good, "--log", good, code=2).stderr)
+        self.assertIn("a divisor of 60", pirsim("control", good, "--schedule-minutes", 7, code=2).stderr)
+        self.assertIn("no clock", pirsim("control", good, "--schedule", self.folder / "s.csv", code=3).stderr)
+        self.assertFalse((self.folder / "s.csv").exists())
+
+
 class Homes(unittest.TestCase):
     def day_of_two(self, folder):
         flat = DATA / "rooms" / "flat.gltf"
