@@ -69,7 +69,7 @@ def control(result: Result, rule: str | os.PathLike[str] | Mapping[str, Any] | N
         file, text = os.fspath(rule), ""
     run, second = np.nonzero(result.valid)
     window_s = float(result.time[0]) if len(result.time) else 1.0
-    clock = None if result.clock is None else result.clock[run, second].astype("datetime64[s]").astype(np.int64)
+    clock = [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist()
     table, lights, rows = _core.control_light(
         file, text, list(result.sensors), list(result.areas), list(result.doors), window_s, run.astype(np.int32),
         np.ascontiguousarray(result.time[second], dtype=np.float64), clock,

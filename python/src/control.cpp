@@ -9,7 +9,6 @@
 #include "arrays.hpp"
 #include "attend.hpp"
 #include "bindings.hpp"
-#include "schema/clock.hpp"
 
 namespace pirsim::python {
 namespace {
@@ -28,10 +27,9 @@ void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) 
 /// local time at each row's end, since 1970. Returns the costs as CSV, the lights, and (row, light) 1 where it is lit.
 nb::tuple control_light(const std::string& file, const std::string& text, std::vector<std::string> sensors,
                         std::vector<std::string> areas, std::vector<std::string> doors, double window_s,
-                        Array<std::int32_t, 1> run, Array<double, 1> time_s,
-                        std::optional<Array<std::int64_t, 1>> clock_s, Array<std::int32_t, 1> people,
-                        Array<std::int32_t, 2> people_of_areas, Array<std::uint8_t, 2> door_open,
-                        Array<std::uint8_t, 2> bits) {
+                        Array<std::int32_t, 1> run, Array<double, 1> time_s, const std::vector<std::string>& clock,
+                        Array<std::int32_t, 1> people, Array<std::int32_t, 2> people_of_areas,
+                        Array<std::uint8_t, 2> door_open, Array<std::uint8_t, 2> bits) {
   std::vector<std::uint8_t> lit;
   std::vector<std::string> lights;
   std::string costs;
@@ -43,8 +41,7 @@ nb::tuple control_light(const std::string& file, const std::string& text, std::v
     for (std::size_t i = 0; i < bits.shape(0); ++i) {
       row.replicate = run(i);
       row.time_s = time_s(i);
-      constexpr std::int64_t day_s = 86400;
-      if (clock_s) row.clock = clock_text((*clock_s)(i) / day_s, static_cast<double>((*clock_s)(i) % day_s));
+      if (!clock.empty()) row.clock = clock[i];
       row.people = people(i);
       copy_row(people_of_areas, i, row.people_of_areas);
       copy_row(door_open, i, row.doors);

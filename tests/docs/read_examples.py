@@ -66,7 +66,8 @@ class Reader:
         assert done.returncode == 0, done.stderr
 
     def script(self, text):
-        room = self.data / "rooms/flat.gltf" if PLACES.search(text) else self.room
+        shipped = "flat.gltf" if PLACES.search(text) else "office_floor.gltf" if "area: meeting_" in text else None
+        room = self.data / "rooms" / shipped if shipped else self.room
         self.run("check", "-q", "--scene", room, "--script", self.write("study.yaml", text))
 
     def scene(self, text):
@@ -102,9 +103,21 @@ class Reader:
         self.write("log.csv", "timestamp,S6_PIR,S7_PIR,Room_Occupancy_Count\n" + times)
         self.run("log", "-q", "log.csv", "--map", self.write("map.yaml", text), "-o", "rows.csv")
 
+    def rule(self, text):
+        """Rows with all that the rule names."""
+        listed = ", ".join(re.findall(r"sensors: \[(.*?)\]", text)) or "PIR1, PIR2"
+        sensors = list(dict.fromkeys(re.findall(r"\w+", listed)))
+        names = (["people_" + area for area in re.findall(r"area: (\w+)", text)] +
+                 ["door_" + door for door in re.findall(r"door: (\w+)", text)] + sensors)
+        rows = [["replicate", "trial", "time_s", "time", "phase", "people", *names]]
+        rows += [["1", "1", str(i), f"2026-03-02T08:00:{i:02}", "occupied", "1", *("1" for _ in names)] for i in range(1, 5)]
+        self.write("rows.csv", "".join(",".join(row) + "\n" for row in rows))
+        self.run("control", "-q", "rows.csv", "--rule", self.write("rule.yaml", text))
+
     def whole(self, text):
         kinds = {"pirsim_script:": self.script, "pirsim_recipe:": self.recipe, "pirsim_nuisance:": self.nuisance,
-                 "pirsim_placements:": self.placements, "pirsim_marks:": self.marks, "pirsim_log:": self.log_map, "id:": self.sensor}
+                 "pirsim_placements:": self.placements, "pirsim_marks:": self.marks, "pirsim_log:": self.log_map,
+                 "pirsim_control:": self.rule, "id:": self.sensor}
         [kind] = [read for key, read in kinds.items() if text.startswith(key)]
         kind(text)
 
