@@ -23,7 +23,7 @@ void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) 
   to.assign(begin, begin + from.shape(1));
 }
 
-/// file, text: of the rule; the text counts where there is no file. Columns of rows, one after the other; clock_s:
+/// file, text: of the rule; the text counts where there is no file. Columns of rows, one after the other; clock:
 /// local time at each row's end, since 1970. Returns the costs as CSV, the lights, and (row, light) 1 where it is lit.
 nb::tuple control_light(const std::string& file, const std::string& text, std::vector<std::string> sensors,
                         std::vector<std::string> areas, std::vector<std::string> doors, double window_s,

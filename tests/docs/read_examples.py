@@ -66,7 +66,7 @@ class Reader:
         assert done.returncode == 0, done.stderr
 
     def script(self, text):
-        shipped = "flat.gltf" if PLACES.search(text) else "office_floor.gltf" if "area: meeting_" in text else None
+        shipped = "flat.gltf" if PLACES.search(text) else "office_floor.gltf" if "{area: meeting_" in text else None
         room = self.data / "rooms" / shipped if shipped else self.room
         self.run("check", "-q", "--scene", room, "--script", self.write("study.yaml", text))
 
