@@ -6,12 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "body/ground.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/scene.hpp"
 
 namespace pirsim::body {
 
 class WayMemory;
+struct StepsLeft;
 
 /// Another person to walk around.
 struct Disc {
@@ -25,7 +27,9 @@ struct Disc {
 /// Immutable; copies share their data.
 class WalkableFloor {
  public:
-  static constexpr double cell_m = 0.1;
+  static constexpr double cell_m = FloorCells::side_m;
+  /// clearance_m: at most what the ground reaches.
+  WalkableFloor(const Ground& ground, double clearance_m);
   WalkableFloor(const FloorArea& floor, std::span<const EntranceSpec> entrances, std::span<const TriMesh> obstacles,
                 double clearance_m);
 
@@ -43,8 +47,12 @@ class WalkableFloor {
   /// goal already is. `others` are kept clear of, by their radius and clearance_m. std::nullopt: no way.
   [[nodiscard]] std::optional<std::vector<Vec2>> find_way(const Vec2& from, const Vec2& to,
                                                           std::span<const Disc> others = {}) const;
+  /// Does find_way() find one? Without searching for it.
+  [[nodiscard]] bool has_way(const Vec2& from, const Vec2& to, std::span<const Disc> others = {}) const;
 
  private:
+  [[nodiscard]] std::shared_ptr<const StepsLeft> steps_left(std::span<const Disc> others) const;
+
   struct Impl;
   std::shared_ptr<const Impl> impl_;
   std::shared_ptr<WayMemory> known_ways_;  ///< not part of what a floor is

@@ -18,15 +18,6 @@ double octile(int columns, int a, int b) noexcept {
   return std::max(across, along) + (std::numbers::sqrt2 - 1.0) * std::min(across, along);
 }
 
-bool is_open(const StepGrid& grid, int cell, int direction) noexcept {
-  return (grid.open[static_cast<std::size_t>(cell)] >> direction & 1) != 0;
-}
-
-int neighbour(const StepGrid& grid, int cell, int direction) noexcept {
-  const Step step = steps[static_cast<std::size_t>(direction)];
-  return cell + step.row * grid.columns + step.column;
-}
-
 std::vector<int> traced_back(const std::vector<int>& parent, int goal) {
   std::vector<int> way;
   for (int cell = goal; cell >= 0; cell = parent[static_cast<std::size_t>(cell)]) way.push_back(cell);
@@ -50,8 +41,8 @@ std::vector<int> shortest_way(const StepGrid& grid, int start, int goal) {
     if (cell == goal) return traced_back(parent, goal);
     if (std::exchange(done[static_cast<std::size_t>(cell)], std::uint8_t{1}) != 0) continue;
     for (int direction = 0; direction < n_directions; ++direction) {
-      if (!is_open(grid, cell, direction)) continue;
-      const int next = neighbour(grid, cell, direction);
+      if (!grid.is_open(cell, direction)) continue;
+      const int next = grid.neighbour(cell, direction);
       const auto at = static_cast<std::size_t>(next);
       const double through = cost[static_cast<std::size_t>(cell)] + (direction % 2 == 0 ? 1.0 : std::numbers::sqrt2);
       if (through >= cost[at]) continue;
@@ -74,8 +65,8 @@ std::vector<int> connected_parts(const StepGrid& grid) {
       const int cell = pending.back();
       pending.pop_back();
       for (int direction = 0; direction < n_directions; ++direction) {
-        if (!is_open(grid, cell, direction)) continue;
-        const int next = neighbour(grid, cell, direction);
+        if (!grid.is_open(cell, direction)) continue;
+        const int next = grid.neighbour(cell, direction);
         if (label[static_cast<std::size_t>(next)] >= 0) continue;
         label[static_cast<std::size_t>(next)] = seed;
         pending.push_back(next);

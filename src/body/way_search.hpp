@@ -15,13 +15,6 @@
 
 namespace pirsim::body {
 
-/// Which of its eight neighbours can be reached from each cell; cells count row by row.
-struct StepGrid {
-  int columns = 0;
-  int rows = 0;
-  std::vector<std::uint8_t> open;  ///< (rows x columns) bit d is set if the step in direction d can be taken
-};
-
 struct Step {
   int column = 0;
   int row = 0;
@@ -31,6 +24,27 @@ inline constexpr int n_directions = 8;
 inline constexpr std::array<Step, n_directions> steps{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 [[nodiscard]] constexpr int opposite(int direction) noexcept { return (direction + 4) % n_directions; }
+
+/// Which of its eight neighbours can be reached from each cell; cells count row by row.
+struct StepGrid {
+  int columns = 0;
+  int rows = 0;
+  std::vector<std::uint8_t> open;  ///< (rows x columns) bit d is set if the step in direction d can be taken
+
+  [[nodiscard]] bool is_open(int cell, int direction) const noexcept {
+    return (open[static_cast<std::size_t>(cell)] >> direction & 1) != 0;
+  }
+  [[nodiscard]] int neighbour(int cell, int direction) const noexcept {
+    const Step step = steps[static_cast<std::size_t>(direction)];
+    return cell + step.row * columns + step.column;
+  }
+  /// There and back.
+  void close(int cell, int direction) noexcept {
+    open[static_cast<std::size_t>(cell)] &= static_cast<std::uint8_t>(~(1U << direction));
+    open[static_cast<std::size_t>(neighbour(cell, direction))] &=
+        static_cast<std::uint8_t>(~(1U << opposite(direction)));
+  }
+};
 
 /// A* with the octile distance; a straight step costs 1, a diagonal one sqrt 2. Of equally good cells the one of
 /// the lowest index goes first. The cells from start to goal, both included; empty if there is no way.

@@ -62,11 +62,11 @@ double along(const std::vector<Vec2>& way, const Vec2& point) {
 bool Pedestrian::bars(const Presence& other, const Vec2& from, const Vec2& to) const {
   std::vector<body::Disc> discs;
   append_discs(other.trunk, squeeze_gap_m, discs);
-  return !person_->narrow_floor->find_way(from, to, discs);
+  return !person_->narrow_floor->has_way(from, to, discs);
 }
 
 /// As few sitters as will do: those on the wished way, but for whoever can be squeezed past once the others are up.
-void Pedestrian::ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now) {
+void Pedestrian::ask_up(const Vec2& target, const Others& others, std::int64_t now) {
   if (!wished_way_ || !person_->narrow_floor || now - *held_up_since_ < ticks(get_up_after_s)) return;
   is_let_by_ = std::ranges::any_of(others, [&](const Presence& other) { return other.got_up_for == index_; });
   if (asks_up_ && now - asked_up_at_ < ticks(ask_every_s)) return;
@@ -86,7 +86,7 @@ void Pedestrian::ask_up(const Vec2& target, std::span<const Presence> others, st
       const bool stays = sitter->person == one || std::ranges::find(asked, sitter->person) == asked.end();
       if (stays) append_discs(sitter->trunk, squeeze_gap_m, discs);
     }
-    const bool can_stay = person_->narrow_floor->find_way(motion_.position(), target, discs).has_value();
+    const bool can_stay = person_->narrow_floor->has_way(motion_.position(), target, discs);
     if (can_stay) {
       asked.erase(asked.begin() + static_cast<std::ptrdiff_t>(i));
     } else {
@@ -97,7 +97,7 @@ void Pedestrian::ask_up(const Vec2& target, std::span<const Presence> others, st
 }
 
 template <class Accepts>
-std::optional<Vec2> Pedestrian::nearest_place(std::span<const Presence> others, const Accepts& accepts) const {
+std::optional<Vec2> Pedestrian::nearest_place(const Others& others, const Accepts& accepts) const {
   constexpr int n_directions = 16;
   constexpr double step_m = 0.15;
   std::vector<body::Disc> discs;
@@ -110,7 +110,7 @@ std::optional<Vec2> Pedestrian::nearest_place(std::span<const Presence> others, 
       if (!person_->floor->walkable(place, place, discs)) continue;
       if (!accepts(place)) continue;
       if (person_->floor->walkable(motion_.position(), place, discs) ||
-          person_->floor->find_way(motion_.position(), place, discs)) {
+          person_->floor->has_way(motion_.position(), place, discs)) {
         return place;
       }
     }
@@ -118,8 +118,7 @@ std::optional<Vec2> Pedestrian::nearest_place(std::span<const Presence> others, 
   return std::nullopt;
 }
 
-std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others,
-                                              double reach_m) const {
+std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, const Others& others, double reach_m) const {
   const double keep_m = radius_m() + whom.room.radius_m + 0.5 * gap_m;
   return nearest_place(others, [&](const Vec2& place) {
     return distance_to_way(place, *whom.wished_way, reach_m + place_reach_m) >= keep_m;
@@ -128,7 +127,7 @@ std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<co
 
 /// Once whom they got up for is past their seat, has sat down or has gone, and so has everybody else who got up and
 /// whom they would bar.
-bool Pedestrian::can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const {
+bool Pedestrian::can_go_back(const Aside& aside, const Others& others, std::int64_t now) const {
   if (now % ticks(search_every_s) != 0) return false;
   const auto whom = std::ranges::find(others, aside.whom, &Presence::person);
   if (whom != others.end() && whom->posture == Presence::Posture::on_feet &&
@@ -144,7 +143,7 @@ bool Pedestrian::can_go_back(const Aside& aside, std::span<const Presence> other
 }
 
 /// For who can't squeeze past: if there is a place to wait.
-bool Pedestrian::gets_up(std::span<const Presence> others, std::int64_t now) {
+bool Pedestrian::gets_up(const Others& others, std::int64_t now) {
   if (now % ticks(search_every_s) != 0) return false;
   const Presence* first = nullptr;
   for (const Presence& other : others) {
@@ -161,8 +160,7 @@ bool Pedestrian::gets_up(std::span<const Presence> others, std::int64_t now) {
   return true;
 }
 
-bool Pedestrian::makes_way_among(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now,
-                                 Sitter sitter) {
+bool Pedestrian::makes_way_among(const Others& others, const DoorsSeen& doors, std::int64_t now, Sitter sitter) {
   if (aside_) return waits_aside(others, doors, now);
   if (motion_.stage() == Stage::seated) {
     return sitter == Sitter::may_get_up && solidity_ == PersonSolidity::solid && gets_up(others, now);
@@ -170,7 +168,7 @@ bool Pedestrian::makes_way_among(std::span<const Presence> others, const DoorsSe
   return steps_back(others, doors, now) || steps_aside(others, now);
 }
 
-bool Pedestrian::waits_aside(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now) {
+bool Pedestrian::waits_aside(const Others& others, const DoorsSeen& doors, std::int64_t now) {
   const bool got_up = aside_->way != nullptr;
   const bool free = aside_->door ? doors.leaves[*aside_->door].distance_to_sweep_m(motion_.position()) >= Doors::hold_m
                     : got_up     ? can_go_back(*aside_, others, now)
@@ -188,7 +186,7 @@ bool Pedestrian::waits_aside(std::span<const Presence> others, const DoorsSeen& 
 }
 
 /// Whom way was made for doesn't wish to come by here any more, and has walked on.
-bool Pedestrian::is_past(const Aside& aside, std::span<const Presence> others) const {
+bool Pedestrian::is_past(const Aside& aside, const Others& others) const {
   const auto whom = std::ranges::find(others, aside.whom, &Presence::person);
   if (whom == others.end()) return true;
   if (whom->wished_way) return false;
@@ -196,7 +194,7 @@ bool Pedestrian::is_past(const Aside& aside, std::span<const Presence> others) c
 }
 
 /// Off the way that somebody on foot wishes to go, if there is a place to wait.
-bool Pedestrian::steps_aside(std::span<const Presence> others, std::int64_t now) {
+bool Pedestrian::steps_aside(const Others& others, std::int64_t now) {
   if (!on_feet() || solidity_ != PersonSolidity::solid) return false;
   if (motion_.stage() == Stage::turning || now % ticks(search_every_s) != 0) return false;
   const bool walks_freely = motion_.speed_m_s() > 0.0 && !held_up_since_;
@@ -220,7 +218,7 @@ bool Pedestrian::steps_aside(std::span<const Presence> others, std::int64_t now)
 }
 
 /// To wait for the leaf, on the side on which they are; among others who can make way if there is no better one.
-std::optional<Vec2> Pedestrian::place_before(const DoorLeaf& leaf, std::span<const Presence> others) const {
+std::optional<Vec2> Pedestrian::place_before(const DoorLeaf& leaf, const Others& others) const {
   const auto is_before = [&](const Vec2& place) {
     return leaf.distance_to_sweep_m(place) > Doors::hold_m && leaf.on_one_side(motion_.position(), place);
   };
@@ -229,7 +227,7 @@ std::optional<Vec2> Pedestrian::place_before(const DoorLeaf& leaf, std::span<con
 }
 
 /// Out of what a leaf sweeps that somebody wants to open, maybe themselves. Who walks there is gone in a moment.
-bool Pedestrian::steps_back(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now) {
+bool Pedestrian::steps_back(const Others& others, const DoorsSeen& doors, std::int64_t now) {
   if (!on_feet() || motion_.stage() == Stage::turning || motion_.speed_m_s() > 0.0) return false;
   if (now % ticks(search_every_s) != 0) return false;
   for (std::size_t i = 0; i < doors.leaves.size(); ++i) {
@@ -246,7 +244,7 @@ bool Pedestrian::steps_back(std::span<const Presence> others, const DoorsSeen& d
 }
 
 /// While somebody squeezes past, or wants to, a sitter leans forward instead of back.
-void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
+void Pedestrian::sit_up(const Others& others, std::int64_t now) {
   if (motion_.stage() != Stage::seated) leans_forward_ = false;
   if (motion_.stage() != Stage::seated || now % ticks(search_every_s) != 0) return;
   constexpr double near_m = 1.5,

@@ -114,7 +114,7 @@ class Rehearsal {
     constexpr double least_room_m2 = 4.0;  // assumed: less is a cupboard or a pillar (tried 2-6)
     bool has_door = false;
     for (const EntranceSpec& door : scene_.entrances) {
-      if (person_.floor->find_way(outside_of(door), place)) return true;
+      if (person_.floor->has_way(outside_of(door), place)) return true;
       has_door = has_door || leads_in(door.id);
     }
     if (has_door) return false;
@@ -123,7 +123,7 @@ class Rehearsal {
     const double wanted_m2 = std::min(least_room_m2, 0.5 * area_m2);
     double reached_m2 = 0.0;
     for (const Vec2& other : places) {
-      if (person_.floor->find_way(place, other)) reached_m2 += spacing_m() * spacing_m();
+      if (person_.floor->has_way(place, other)) reached_m2 += spacing_m() * spacing_m();
       if (reached_m2 >= wanted_m2) return true;
     }
     return places.empty();
@@ -186,7 +186,7 @@ class Rehearsal {
     go_to(target, "entrance '" + entrance + "'", where);
   }
 
-  bool can_go_to(const Vec2& target) const { return at_ && person_.floor->find_way(*at_, target).has_value(); }
+  bool can_go_to(const Vec2& target) const { return at_ && person_.floor->has_way(*at_, target); }
 
   void go_to(const Vec2& target, const std::string& what, const Where& where) {
     if (!at_) return;
@@ -214,9 +214,8 @@ class Rehearsal {
   bool leads_in(const std::string& id) const {
     const auto [known, is_new] = grounds_.open_doors.try_emplace({person_.floor->clearance_m(), id});
     if (is_new) {
-      known->second = std::ranges::any_of(places_to_walk(), [&](const Vec2& place) {
-        return person_.floor->find_way(outside_of(door_of(id)), place).has_value();
-      });
+      known->second = std::ranges::any_of(
+          places_to_walk(), [&](const Vec2& place) { return person_.floor->has_way(outside_of(door_of(id)), place); });
     }
     return known->second;
   }
@@ -313,14 +312,25 @@ std::vector<std::string> entrances_used(const TrialInForce& trial) {
   return trial.schedule ? trial.schedule->entrances : std::vector<std::string>{};
 }
 
+double widest_clearance_m(const std::vector<TrialInForce>& trials) {
+  double widest_m = 0.0;
+  for (const TrialInForce& trial : trials) {
+    for (const PersonInForce& spec : trial.people)
+      widest_m = std::max(widest_m, body::Humanoid(spec).clearance_radius_m());
+  }
+  return widest_m;
+}
+
 std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                           const SceneSpec& scene, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> planned_trials;
+  std::optional<body::Ground> ground;
   const auto floor_with = [&](double keep_m) -> const std::shared_ptr<const body::WalkableFloor>& {
     auto& floor = floors[keep_m];
     if (floor) return floor;
     try {
-      floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, keep_m);
+      if (!ground) ground.emplace(scene.floor, scene.entrances, scene.meshes, widest_clearance_m(trials));
+      floor = std::make_shared<const body::WalkableFloor>(*ground, keep_m);
     } catch (const Error& fault) {  // the floor knows no names
       throw Error(fault.code(), Where{scene.name}, fault.issues().front().message);
     }

@@ -17,8 +17,7 @@ StandingPlaces::StandingPlaces(const SceneSpec& scene, const PersonModel& person
 }
 
 bool StandingPlaces::can_be_reached(const Vec2& place) const {
-  return scene_.floor.contains(place) && person_.floor->walkable(place) &&
-         person_.floor->find_way(outside_, place).has_value();
+  return scene_.floor.contains(place) && person_.floor->walkable(place) && person_.floor->has_way(outside_, place);
 }
 
 /// Not where others sit down, nor in a doorway.

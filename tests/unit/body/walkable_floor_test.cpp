@@ -256,6 +256,7 @@ TEST_CASE("ways in random rooms exist as by brute force, are no longer, and ever
     const double best = brute_force_m(floor, 40, 30, from, to);
     const auto way = floor.find_way(from, to);
     REQUIRE(way.has_value() == std::isfinite(best));
+    REQUIRE(floor.has_way(from, to) == way.has_value());
     if (!way) {
       ++none;
       continue;
