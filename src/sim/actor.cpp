@@ -67,7 +67,7 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
   incidents_.push_back({kind, tick, index_, body_ ? body_->motion().position() : Vec2(0.0)});
 }
 
-void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) {
+void Actor::begin(const CompiledStudy& study, const Others& others) {
   if (done() || action().at_s.value_or(0.0) > 0.0) return;
   const ActionFacts facts = facts_of(action().what);
   if (facts.course != Course::comes || facts.entrance != nullptr) return;
@@ -109,8 +109,7 @@ DoorUser Actor::door_user(const FloorArea& floor, const Vec2& before) const {
   return user;
 }
 
-void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
-                    std::size_t n_before, const DoorsSeen& doors) {
+void Actor::advance(const CompiledStudy& study, std::int64_t tick, const Others& others, const DoorsSeen& doors) {
   incidents_.clear();
   carry_on({study, others, tick - 1, doors});
   if (body_) {
@@ -120,7 +119,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
     } else if (restlessness_.acts()) {
       restlessness_.tick(body_motion(), choreographed_work());
     }
-    facts_.follows != nullptr ? body_motion().advance() : body_->advance(others, n_before, doors, tick - 1);
+    facts_.follows != nullptr ? body_motion().advance() : body_->advance(others, doors, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
   phase_ = current_phase();
@@ -561,14 +560,14 @@ Progress Actor::carry_out(FollowPath& follow, const Scene& scene) {
   return Progress::going_on;
 }
 
-bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) const {
+bool Actor::somebody_near(const Vec2& point, const Others& others) const {
   const double radius = person().humanoid.clearance_radius_m();
   return std::ranges::any_of(others, [&](const Presence& other) {
     return glm::distance(other.position, point) < other.room.radius_m + radius + gap_m;
   });
 }
 
-bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const {
+bool Actor::door_is_taken(const WaitForDoor& door, const Others& others) const {
   return std::ranges::any_of(others, [&](const Presence& other) {
     const bool goes_out = glm::distance(other.destination, door.outside) < gap_m;
     if (door.way == Through::in) return goes_out;

@@ -31,12 +31,11 @@ class Actor {
 
   /// Before tick 1, with those in the scene already: who appears at the start has been there all along, unless somebody
   /// stands there.
-  void begin(const CompiledStudy& study, std::span<const Presence> others);
-  /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
-  /// the scene, in the order of the script; those before this person go first where ways cross.
+  void begin(const CompiledStudy& study, const Others& others);
+  /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone
+  /// else in the scene.
   /// Throws Error(infeasible) if there is no way to where the script leads, even without others.
-  void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before,
-               const DoorsSeen& doors);
+  void advance(const CompiledStudy& study, std::int64_t tick, const Others& others, const DoorsSeen& doors);
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
   /// Is it a person over this floor area?
@@ -124,7 +123,7 @@ class Actor {
   /// What surrounds the person at this tick.
   struct Scene {
     const CompiledStudy& study;
-    std::span<const Presence> others;
+    Others others;
     std::int64_t now;
     DoorsSeen doors = {};
   };
@@ -153,8 +152,8 @@ class Actor {
   [[nodiscard]] std::optional<std::size_t> interrupting_action(const Scene& scene) const;
   void note_times(const CompiledStudy& study);
   [[nodiscard]] bool time_is_up(std::int64_t now) const noexcept;
-  [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
-  [[nodiscard]] bool somebody_near(const Vec2& point, std::span<const Presence> others) const;
+  [[nodiscard]] bool door_is_taken(const WaitForDoor& door, const Others& others) const;
+  [[nodiscard]] bool somebody_near(const Vec2& point, const Others& others) const;
   Progress carry_out_first(const Scene& scene);
   Progress carry_out(const ComeIn& errand, const Scene& scene);
   Progress carry_out(const WaitForDoor& errand, const Scene& scene);

@@ -31,32 +31,11 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : doors_(study, run)
   if (trial.schedule) plan = std::make_shared<const DayPlan>(draw_day(study, run));
   if (trial.occupancy) plan = std::make_shared<const DayPlan>(draw_occupancy(study, run));
   for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person, plan);
-  presences_.resize(n_people);
   seated_.resize(n_people, 0);
   for (std::size_t i = 0; i < n_people; ++i) {
-    actors_[i].begin(study, others_);
-    if (n_people == 1 || !actors_[i].present()) continue;  // of one nobody asks
-    presences_[i] = actors_[i].presence();
-    others_.push_back(*presences_[i]);
+    actors_[i].begin(study, {in_scene_, in_scene_.size(), Others::Me::not_there});
+    if (n_people > 1 && actors_[i].present()) in_scene_.push_back(actors_[i].presence());  // of one nobody asks
   }
-}
-
-void Crowd::gather_others_of_first() {
-  others_.clear();
-  for (std::size_t other = 1; other < actors_.size(); ++other) {
-    if (presences_[other]) others_.push_back(*presences_[other]);
-  }
-}
-
-/// Person i stands now where person i + 1 stood among the others. Most often both are there, or neither is: then a
-/// crowd that waits outside costs no more than it has people.
-std::size_t Crowd::pass_on_others(std::size_t i, std::size_t n_before) {
-  const bool comes = presences_[i].has_value(), goes = presences_[i + 1].has_value();
-  const auto at = others_.begin() + static_cast<std::ptrdiff_t>(n_before);
-  if (comes && goes) *at = *presences_[i];
-  if (comes && !goes) others_.insert(at, *presences_[i]);
-  if (!comes && goes) others_.erase(at);
-  return n_before + (comes ? 1 : 0);
 }
 
 /// Who takes part in a meeting looks at whoever speaks in their area.
@@ -84,7 +63,7 @@ void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
 void Crowd::advance(const CompiledStudy& study, std::int64_t tick) {
   let_speak(study, tick);
   if (actors_.size() == 1) {  // nobody asks
-    actors_.front().advance(study, tick, {}, 0, doors_.seen(study));
+    actors_.front().advance(study, tick, {}, doors_.seen(study));
   } else if (!actors_.empty()) {
     advance_among_others(study, tick);
   }
@@ -109,14 +88,18 @@ void Crowd::turn_leaves(const CompiledStudy& study, std::int64_t tick) {
   doors_.advance(study, tick, door_users_);
 }
 
+/// One after the other: those before a person in the script have been advanced already. Who comes or goes is seldom.
 void Crowd::advance_among_others(const CompiledStudy& study, std::int64_t tick) {
-  gather_others_of_first();
   std::size_t n_before = 0;
-  for (std::size_t i = 0; i < actors_.size(); ++i) {
-    actors_[i].advance(study, tick, others_, n_before, doors_.seen(study));
-    presences_[i].reset();
-    if (actors_[i].present()) presences_[i] = actors_[i].presence();
-    if (i + 1 < actors_.size()) n_before = pass_on_others(i, n_before);
+  for (Actor& actor : actors_) {
+    const bool was_there = actor.present();
+    const auto me = was_there ? Others::Me::among_them : Others::Me::not_there;
+    actor.advance(study, tick, {in_scene_, n_before, me}, doors_.seen(study));
+    const auto at = in_scene_.begin() + static_cast<std::ptrdiff_t>(n_before);
+    if (was_there && actor.present()) *at = actor.presence();
+    if (was_there && !actor.present()) in_scene_.erase(at);
+    if (!was_there && actor.present()) in_scene_.insert(at, actor.presence());
+    if (actor.present()) ++n_before;
   }
 }
 

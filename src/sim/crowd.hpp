@@ -52,23 +52,17 @@ class Crowd {
 
  private:
   void advance_among_others(const CompiledStudy& study, std::int64_t tick);
-  /// Fills others_ with everyone in the scene but the first person.
-  void gather_others_of_first();
-  /// Makes the others of person i, who has been advanced, those of person i + 1. n_before: how many of them come before
-  /// in the script; returns how many do then.
-  std::size_t pass_on_others(std::size_t i, std::size_t n_before);
   void note_seats_left(const CompiledStudy& study);
   void turn_leaves(const CompiledStudy& study, std::int64_t tick);
   void let_speak(const CompiledStudy& study, std::int64_t tick);
 
   std::vector<Actor> actors_;
-  std::vector<std::optional<Presence>> presences_;  ///< (n_actors) as they are now; of those in the scene
-  std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
+  std::vector<Presence> in_scene_;    ///< as they are now, in the order of the script; empty where there is one actor
+  std::vector<std::uint8_t> seated_;  ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
   std::vector<Conversation> conversations_;  ///< one of each area, one in a scene without areas
   Doors doors_;
   std::vector<std::optional<Vec2>> places_;  ///< (n_actors) at the last tick, in scenes with doors
-  std::vector<Presence> others_;             ///< scratch
   std::vector<std::uint32_t> participants_;  ///< scratch
   std::vector<std::uint32_t> together_;      ///< scratch
   std::vector<DoorUser> door_users_;         ///< scratch

@@ -171,7 +171,7 @@ class Visits {
     Crossings found;
     bool was_inside = false;
     for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
-      actor.advance(study_, tick, {}, 0, {});
+      actor.advance(study_, tick, {}, {});
       const bool is_inside = actor.counts_on(study_.scene().floor);
       const double now_s = static_cast<double>(tick) * study_.tick_s();
       if (is_inside && !was_inside && now_s < leaves_s) found.in_s = now_s;

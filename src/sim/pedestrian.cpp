@@ -148,7 +148,7 @@ void Pedestrian::pass_through(std::int64_t now) {
 }
 
 /// Solid again once clear of everybody, on the way or at its end.
-void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
+void Pedestrian::end_passing(const Others& others) noexcept {
   const bool clear = std::ranges::none_of(others, [&](const Presence& other) {
     return distance(motion_.position(), other.trunk) < person_->humanoid.trunk_radius_m();
   });
@@ -157,7 +157,7 @@ void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
   if (clear && done) solidity_ = PersonSolidity::solid;
 }
 
-Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now) {
+Progress Pedestrian::stand_up(const Others& others, std::int64_t now) {
   if (motion_.stage() == Stage::standing) return motion_.settled() ? Progress::done : Progress::going_on;
   const Stage stage = motion_.stage();
   const bool on_seat =
@@ -175,7 +175,7 @@ Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now
   return Progress::going_on;
 }
 
-void Pedestrian::sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now) {
+void Pedestrian::sit_down(const body::SeatPlace& seat, const Others& others, std::int64_t now) {
   const Vec2 back = motion_.position() - body::fall_back_m(person_->humanoid, seat) * direction_of(motion_.heading());
   if (solidity_ != PersonSolidity::solid || free_to_draw_back(back, others)) {
     motion_.sit_down(seat);
@@ -191,7 +191,7 @@ void Pedestrian::wish_way(Way way, std::int64_t now) {
   if (!wished_way_ && is_held_up(now)) wished_way_ = std::make_shared<const Way>(std::move(way));
 }
 
-bool Pedestrian::free_to_draw_back(const Vec2& to, std::span<const Presence> others) const {
+bool Pedestrian::free_to_draw_back(const Vec2& to, const Others& others) const {
   const Vec2 from = motion_.position();
   return std::ranges::none_of(others, [&](const Presence& other) {
     if (!is_solid(other)) return false;
@@ -208,7 +208,7 @@ bool Pedestrian::free_to_draw_back(const Vec2& to, std::span<const Presence> oth
   });
 }
 
-std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::span<const Presence> others) const {
+std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, const Others& others) const {
   if (solidity_ != PersonSolidity::solid) {
     auto way = floor().find_way(motion_.position(), target);
     return way || !person_->narrow_floor ? way : person_->narrow_floor->find_way(motion_.position(), target);
@@ -225,7 +225,7 @@ std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::
   return floor().find_way(motion_.position(), target, discs);
 }
 
-Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now) {
+Progress Pedestrian::go_to(const Vec2& target, const Others& others, std::int64_t now) {
   if (target_ != target) route_.reset();
   if (route_ && motion_.stage() == Stage::walking) return Progress::going_on;
   target_ = target;
@@ -276,7 +276,7 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
 
 /// How far one can go, on the route or straight on to a halt, before one comes too near to somebody, and nearer than
 /// one is.
-double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
+double Pedestrian::free_way_ahead(const Others& others) const {
   constexpr double step_m = 0.05;
   double free_m = look_ahead_m;
   const Vec2 here = motion_.position(), straight = direction_of(motion_.heading());
@@ -311,8 +311,7 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
   return false;
 }
 
-void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors,
-                               std::int64_t now) {
+void Pedestrian::keep_distance(const Others& others, const DoorsSeen& doors, std::int64_t now) {
   const double door_m = free_way_to_doors(doors);
   const double before_door = std::sqrt(2.0 * braking_m_s2 * std::max(0.0, door_m));
   if (solidity_ != PersonSolidity::solid) {
@@ -320,7 +319,7 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
     return;
   }
   const double free_m = others.empty() ? look_ahead_m : free_way_ahead(others);
-  const bool give_way = must_give_way(others.first(n_before));
+  const bool give_way = must_give_way(others.before_me());
   const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
   const double pace = (width_ == Width::narrow ? squeeze_speed : 1.0) * motion_.pace_m_s();
   motion_.limit_speed(std::min({pace, safe, before_door}));
@@ -337,7 +336,7 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
 }
 
 /// Would this tick's step bring my trunk into somebody's, or deeper into it?
-bool Pedestrian::bumps_into(std::span<const Presence> others) const {
+bool Pedestrian::bumps_into(const Others& others) const {
   constexpr double near_m = 0.05;  // more than any step
   const bool moves =
       motion_.stage() != Stage::seated && motion_.stage() != Stage::standing && motion_.stage() != Stage::lying;
@@ -357,12 +356,11 @@ bool Pedestrian::bumps_into(std::span<const Presence> others) const {
   });
 }
 
-void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors,
-                         std::int64_t now) {
+void Pedestrian::advance(const Others& others, const DoorsSeen& doors, std::int64_t now) {
   wanted_door_.reset();
   if (!others.empty()) sit_up(others, now);
   const std::int64_t counted = held_up_ticks_;
-  if (motion_.stage() == Stage::walking) keep_distance(others, n_before, doors, now);
+  if (motion_.stage() == Stage::walking) keep_distance(others, doors, now);
   const Vec2 before = motion_.position();
   const bool waits = !others.empty() && bumps_into(others);
   if (waits && held_up_ticks_ == counted) be_held_up(now);

@@ -40,18 +40,18 @@ class Pedestrian {
   /// Of whoever sits: has their script something left to do, so that they would come back to their seat?
   enum class Sitter { stays, may_get_up };
   /// Makes way for others if need be; true while that is what the body does, so that commands have to wait.
-  bool makes_way(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now, Sitter sitter) {
+  bool makes_way(const Others& others, const DoorsSeen& doors, std::int64_t now, Sitter sitter) {
     return (aside_ || !others.empty() || !doors.leaves.empty()) && makes_way_among(others, doors, now, sitter);
   }
   [[nodiscard]] bool on_feet() const noexcept;
   /// For somebody, and hasn't sat down again.
   [[nodiscard]] bool got_up() const noexcept { return got_up_from_ && motion_.stage() != body::Stage::seated; }
   /// Rises if need be, then walks. Throws Error(infeasible) if there is no way even without others.
-  Progress go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now);
+  Progress go_to(const Vec2& target, const Others& others, std::int64_t now);
   /// From a seat as soon as the way back is free; stops a walk that isn't one of go_to().
-  Progress stand_up(std::span<const Presence> others, std::int64_t now);
+  Progress stand_up(const Others& others, std::int64_t now);
   /// From where one stands before the seat, as soon as there is room to draw the chair back.
-  void sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now);
+  void sit_down(const body::SeatPlace& seat, const Others& others, std::int64_t now);
   void forget_way() noexcept;
   /// From now on through others, until clear of them: an incident.
   void pass_through(std::int64_t now);
@@ -64,8 +64,7 @@ class Pedestrian {
     wished_way_.reset();
   }
 
-  /// n_before: of the others, those who go first where ways cross.
-  void advance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors, std::int64_t now);
+  void advance(const Others& others, const DoorsSeen& doors, std::int64_t now);
   /// The door before which they wait, or through which they go next.
   [[nodiscard]] std::optional<std::size_t> wanted_door() const noexcept { return wanted_door_; }
 
@@ -74,7 +73,7 @@ class Pedestrian {
 
  private:
   using Way = std::vector<Vec2>;
-  bool makes_way_among(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now, Sitter sitter);
+  bool makes_way_among(const Others& others, const DoorsSeen& doors, std::int64_t now, Sitter sitter);
 
   static constexpr double gap_m = 0.1;              ///< assumed: kept between two people on foot beside their radii
   static constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past (tried 0.02, 0.03)
@@ -101,9 +100,9 @@ class Pedestrian {
     return width_ == Width::narrow ? other.trunk : other.room;
   }
   [[nodiscard]] double gap_to(const Presence& other) const noexcept;
-  [[nodiscard]] bool free_to_draw_back(const Vec2& to, std::span<const Presence> others) const;
-  [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
-  [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
+  [[nodiscard]] bool free_to_draw_back(const Vec2& to, const Others& others) const;
+  [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, const Others& others) const;
+  [[nodiscard]] double free_way_ahead(const Others& others) const;
   struct WayToDoor {
     double free_m = 0.0;              ///< on the route, before a leaf that isn't open is in the way
     std::optional<double> through_m;  ///< where the route leads through it, if it does so soon
@@ -114,24 +113,23 @@ class Pedestrian {
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   /// Near by: accepted, walkable among others, and so is a way there.
   template <class Accepts>
-  [[nodiscard]] std::optional<Vec2> nearest_place(std::span<const Presence> others, const Accepts& accepts) const;
-  [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others,
-                                                  double reach_m) const;
-  [[nodiscard]] bool can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const;
-  [[nodiscard]] bool is_past(const Aside& aside, std::span<const Presence> others) const;
-  bool waits_aside(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now);
-  bool steps_aside(std::span<const Presence> others, std::int64_t now);
-  [[nodiscard]] std::optional<Vec2> place_before(const DoorLeaf& leaf, std::span<const Presence> others) const;
-  bool steps_back(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now);
-  bool gets_up(std::span<const Presence> others, std::int64_t now);
+  [[nodiscard]] std::optional<Vec2> nearest_place(const Others& others, const Accepts& accepts) const;
+  [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, const Others& others, double reach_m) const;
+  [[nodiscard]] bool can_go_back(const Aside& aside, const Others& others, std::int64_t now) const;
+  [[nodiscard]] bool is_past(const Aside& aside, const Others& others) const;
+  bool waits_aside(const Others& others, const DoorsSeen& doors, std::int64_t now);
+  bool steps_aside(const Others& others, std::int64_t now);
+  [[nodiscard]] std::optional<Vec2> place_before(const DoorLeaf& leaf, const Others& others) const;
+  bool steps_back(const Others& others, const DoorsSeen& doors, std::int64_t now);
+  bool gets_up(const Others& others, std::int64_t now);
   [[nodiscard]] bool bars(const Presence& other, const Vec2& from, const Vec2& to) const;
-  void ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now);
-  [[nodiscard]] bool bumps_into(std::span<const Presence> others) const;
-  void keep_distance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors, std::int64_t now);
+  void ask_up(const Vec2& target, const Others& others, std::int64_t now);
+  [[nodiscard]] bool bumps_into(const Others& others) const;
+  void keep_distance(const Others& others, const DoorsSeen& doors, std::int64_t now);
   void be_held_up(std::int64_t now);
   void wish_way(Way way, std::int64_t now);
-  void sit_up(std::span<const Presence> others, std::int64_t now);
-  void end_passing(std::span<const Presence> others) noexcept;
+  void sit_up(const Others& others, std::int64_t now);
+  void end_passing(const Others& others) noexcept;
 
   const PersonModel* person_ = nullptr;
   std::uint32_t index_ = 0;

@@ -1,9 +1,11 @@
 // What people know of each other.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -59,6 +61,53 @@ struct Presence {
 [[nodiscard]] inline bool is_solid(const Presence& other) noexcept {
   return other.solidity == Presence::Solidity::solid;
 }
+
+/// Everybody in the scene but one, in the order of the script: a view.
+class Others {
+ public:
+  class Iterator {
+   public:
+    using value_type = Presence;
+    using difference_type = std::ptrdiff_t;
+    Iterator() = default;
+    Iterator(const Presence* at, const Presence* me) : at_(at), me_(me) {}
+    const Presence& operator*() const noexcept { return *at_; }
+    const Presence* operator->() const noexcept { return at_; }
+    Iterator& operator++() noexcept {
+      if (++at_ == me_) ++at_;
+      return *this;
+    }
+    Iterator operator++(int) noexcept {
+      const Iterator before = *this;
+      ++*this;
+      return before;
+    }
+    bool operator==(const Iterator& other) const noexcept { return at_ == other.at_; }
+
+   private:
+    const Presence* at_ = nullptr;
+    const Presence* me_ = nullptr;  ///< is passed over, if not null
+  };
+
+  enum class Me { among_them, not_there };
+  Others() = default;
+  /// in_scene: outlives the view; n_before: how many of them come before me in the script.
+  Others(std::span<const Presence> in_scene, std::size_t n_before, Me me)
+      : in_scene_(in_scene), n_before_(n_before), me_(me == Me::among_them ? &in_scene[n_before] : nullptr) {}
+
+  [[nodiscard]] Iterator begin() const noexcept {
+    return {in_scene_.data() + (me_ != nullptr && n_before_ == 0 ? 1 : 0), me_};
+  }
+  [[nodiscard]] Iterator end() const noexcept { return {in_scene_.data() + in_scene_.size(), nullptr}; }
+  [[nodiscard]] bool empty() const noexcept { return begin() == end(); }
+  /// Those who go first where ways cross.
+  [[nodiscard]] std::span<const Presence> before_me() const noexcept { return in_scene_.first(n_before_); }
+
+ private:
+  std::span<const Presence> in_scene_;
+  std::size_t n_before_ = 0;
+  const Presence* me_ = nullptr;
+};
 
 /// See RunIncident.
 struct Incident {
