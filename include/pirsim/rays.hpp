@@ -50,6 +50,14 @@ class ZoneSet {
   void add(std::span<const Word> words) noexcept {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= words[i];
   }
+  /// Members that one word holds, out of many that hold none.
+  struct Part {
+    std::size_t at = 0;  ///< index of the word
+    Word word = 0;
+  };
+  void add(std::span<const Part> parts) noexcept {
+    for (const Part& part : parts) words_[part.at] |= part.word;
+  }
   [[nodiscard]] std::span<const Word> words() const noexcept { return words_; }
   [[nodiscard]] std::span<Word> words() noexcept { return words_; }
   bool operator==(const ZoneSet&) const = default;

@@ -23,15 +23,14 @@ class DirectTracer final : public Tracer {
   [[nodiscard]] bool may_be_remembered() const noexcept override { return true; }
 
  private:
-  /// The zones of solid i are words [i * n_words_, (i + 1) * n_words_).
+  using ZoneParts = std::vector<ZoneSet::Part>;
   struct Person {
     std::vector<FollowedSolid> solids;
-    std::vector<ZoneSet::Word> zones;
+    std::vector<ZoneParts> zones;  ///< (n_solids)
   };
 
-  void find_zones(const FollowedSolid& solid, ZoneSet::Word* zones);
+  void find_zones(const FollowedSolid& solid, ZoneParts& zones);
 
-  std::size_t n_words_;  ///< of a set of all zones
   RaySearch search_;
   std::vector<Person> people_;
   FirstHits first_hits_;

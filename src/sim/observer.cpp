@@ -5,11 +5,11 @@
 namespace pirsim::sim {
 namespace {
 
-std::size_t n_words(std::size_t n_bits) { return ZoneSet(n_bits).words().size(); }
-
-PostureMemory memory_for(const rt::Tracer* tracer, std::size_t words_per_row) {
-  return PostureMemory(words_per_row,
-                       tracer != nullptr && tracer->may_be_remembered() ? PostureMemory::most_entries : 0);
+/// Most people are seen by few sensors.
+std::size_t usual_parts(const SensorArray& array) {
+  constexpr std::size_t most = 16;
+  const auto n_words = [](std::size_t n_bits) { return ZoneSet(n_bits).words().size(); };
+  return std::min(most, n_words(array.channels().n_zones()) + n_words(array.channels().n_channels()));
 }
 
 }  // namespace
@@ -17,7 +17,7 @@ PostureMemory memory_for(const rt::Tracer* tracer, std::size_t words_per_row) {
 Observer::Observer(const SensorArray& array, TracerKind kind, ZonesOf whose)
     : array_(array),
       tracer_(array.make_tracer(kind, whose)),
-      memory_(memory_for(tracer_.get(), n_words(array.channels().n_zones()) + n_words(array.channels().n_channels()))),
+      memory_(usual_parts(array), tracer_ && tracer_->may_be_remembered() ? most_postures : 0),
       power_meter_(array.analog() != nullptr ? std::make_unique<PowerMeter>(array, kind) : nullptr),
       person_zones_(array.channels().n_zones()),
       person_channels_(array.channels().n_channels()) {}
@@ -36,9 +36,9 @@ void Observer::look_at_zones(const std::vector<Actor>& actors, std::span<const L
   const std::size_t n_zone_words = exposure.zones.words().size();
   for (std::size_t person = 0; person < actors.size(); ++person) {
     if (!actors[person].present()) continue;
-    const std::span<const ZoneSet::Word> row = row_of(person, actors[person]);
-    exposure.zones.add(row.first(n_zone_words));
-    exposure.channels.add(row.subspan(n_zone_words));
+    for (const auto& [at, word] : seen_of(person, actors[person])) {
+      (at < n_zone_words ? exposure.zones.words()[at] : exposure.channels.words()[at - n_zone_words]) |= word;
+    }
   }
   if (array_.polarity()) array_.polarity()->add_up(exposure.zones, exposure.sums);
 }
@@ -52,20 +52,24 @@ void Observer::look(std::span<const PosedShape> solids, const BodyRadiance& radi
   if (power_meter_) power_meter_->measure(solids, radiance, exposure.powers);
 }
 
-std::span<const ZoneSet::Word> Observer::row_of(std::size_t person, const Actor& actor) {
+Observer::Parts Observer::seen_of(std::size_t person, const Actor& actor) {
   const body::Humanoid& humanoid = actor.person().humanoid;
   const body::Outline outline = actor.motion().outline();
-  if (const auto known = memory_.find(person, &humanoid, outline, leaves_.number()); !known.empty()) return known;
+  if (const auto known = memory_.find(person, &humanoid, outline, leaves_.number()); known) return *known;
   person_zones_.clear();
   person_channels_.clear();
   tracer_->add(person, mannequins_[person].pose(humanoid, outline), person_zones_);
   array_.channels().add_channels(person_zones_, person_channels_);
-  row_.clear();
+  parts_.clear();
+  std::size_t at = 0;
   for (const ZoneSet* set : {&person_zones_, &person_channels_}) {
-    row_.insert(row_.end(), set->words().begin(), set->words().end());
+    for (const ZoneSet::Word word : set->words()) {
+      if (word != 0) parts_.push_back({at, word});
+      ++at;
+    }
   }
-  memory_.remember(person, row_);
-  return row_;
+  memory_.remember(person, parts_);
+  return parts_;
 }
 
 }  // namespace pirsim::sim

@@ -30,17 +30,19 @@ class Observer {
   void look(std::span<const PosedShape> solids, const BodyRadiance& radiance, Exposure& exposure);
 
  private:
-  std::span<const ZoneSet::Word> row_of(std::size_t person, const Actor& actor);
+  /// Of a set of zones and of one of channels, its words counted on from those of the zones.
+  using Parts = std::span<const ZoneSet::Part>;
+  Parts seen_of(std::size_t person, const Actor& actor);
 
   const SensorArray& array_;
   std::unique_ptr<rt::Tracer> tracer_;  ///< null: no zones are wanted
   LeafNumbers leaves_;
-  PostureMemory memory_;
+  PostureMemory<ZoneSet::Part> memory_;
   std::unique_ptr<PowerMeter> power_meter_;  ///< null: no sensor is analog
   // Scratch.
   std::vector<Mannequin> mannequins_;  ///< (n_people)
   ZoneSet person_zones_, person_channels_;
-  std::vector<ZoneSet::Word> row_;  ///< words of a person's zones, then of their channels
+  std::vector<ZoneSet::Part> parts_;
 };
 
 /// As many observers as there were runs at a time. Safe to use from any thread; study and pool outlive what is

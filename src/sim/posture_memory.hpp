@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "body/motion.hpp"
-#include "pirsim/rays.hpp"
 
 namespace pirsim::sim {
 
@@ -52,42 +52,48 @@ class PostureIndex {
   std::size_t free_bucket_ = 0;  ///< for wanted_
 };
 
-/// A row of words for each of a bounded number of postures. When it is full it starts anew. A capacity of 0 remembers
+/// A row of items for each of a bounded number of postures. When it is full it starts anew. A capacity of 0 remembers
 /// nothing.
+template <class Item>
 class PostureMemory {
  public:
-  using Word = ZoneSet::Word;
-  /// Study A has some 30,000 different postures; with its 250 bytes each this bounds the memory to 16 MB a thread.
-  static constexpr std::size_t most_entries = 65536;
-
-  PostureMemory(std::size_t words_per_row, std::size_t capacity)
-      : words_per_row_(words_per_row), capacity_(capacity), index_(capacity) {
-    rows_.reserve(capacity * words_per_row);
+  /// items_per_row: in most rows at most; longer ones take more memory when they come.
+  PostureMemory(std::size_t items_per_row, std::size_t capacity) : capacity_(capacity), index_(capacity) {
+    rows_.reserve(capacity * items_per_row);
+    begins_.reserve(capacity + 1);
+    begins_.push_back(0);
   }
-  /// Empty if the posture isn't known; see PostureIndex::find.
-  [[nodiscard]] std::span<const Word> find(std::size_t person, const void* humanoid, const body::Outline& outline,
-                                           std::uint64_t doors = 0) noexcept {
+  /// None if the posture isn't known; see PostureIndex::find.
+  [[nodiscard]] std::optional<std::span<const Item>> find(std::size_t person, const void* humanoid,
+                                                          const body::Outline& outline,
+                                                          std::uint64_t doors = 0) noexcept {
     const auto body = reinterpret_cast<std::uintptr_t>(humanoid);
     const PostureIndex::Number known = index_.find(person, body, outline, doors);
-    if (known == 0) return {};
-    return {&rows_[(known - 1) * words_per_row_], words_per_row_};
+    if (known == 0) return std::nullopt;
+    return std::span(rows_).subspan(begins_[known - 1], begins_[known] - begins_[known - 1]);
   }
   /// Remembers the row under what find() was last asked for in vain, for the same person.
-  void remember(std::size_t person, std::span<const Word> row) {
+  void remember(std::size_t person, std::span<const Item> row) {
     if (capacity_ == 0) return;
     if (index_.size() == capacity_) {
       index_.forget_all();
       rows_.clear();
+      begins_.assign(1, 0);
     }
     (void)index_.remember(person);
     rows_.insert(rows_.end(), row.begin(), row.end());
+    begins_.push_back(rows_.size());
   }
   void make_room_for(std::size_t n_people) { index_.make_room_for(n_people); }
 
  private:
-  std::size_t words_per_row_, capacity_;
+  std::size_t capacity_;
   PostureIndex index_;
-  std::vector<Word> rows_;  ///< (n_postures x words_per_row)
+  std::vector<Item> rows_;
+  std::vector<std::size_t> begins_;  ///< (n_postures + 1) of rows, in rows_
 };
+
+/// Study A has some 30,000 different postures; with its 250 bytes each this bounds the memory to 16 MB a thread.
+inline constexpr std::size_t most_postures = 65536;
 
 }  // namespace pirsim::sim

@@ -1,7 +1,6 @@
 #include "sim/power_meter.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 namespace pirsim::sim {
@@ -15,9 +14,8 @@ bool is_same(const body::Outline& a, const body::Outline& b) noexcept { return s
 PowerMeter::PowerMeter(const SensorArray& array, TracerKind kind)
     : power_(array.analog()->power()),
       tracer_(array.make_power_tracer(kind)),
-      alone_(power_.n_receivers(), tracer_->may_be_remembered() ? PostureMemory::most_entries : 0),
-      powers_(power_.n_receivers(), 0),
-      row_(power_.n_receivers()) {}
+      alone_(power_.n_receivers(), tracer_->may_be_remembered() ? most_postures : 0),
+      powers_(power_.n_receivers(), 0) {}
 
 std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept {
   std::array<std::uint8_t, body::n_parts> surfaces{};
@@ -53,16 +51,13 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<const LeafS
   const auto person = static_cast<std::size_t>(first - actors.begin());
   alone_.make_room_for(actors.size());
   const auto known = alone_.find(person, &first->person().humanoid, first->motion().outline(), leaves_.number());
-  if (!known.empty()) {
-    std::ranges::transform(known, powers.begin(),
-                           [](PostureMemory::Word word) { return std::bit_cast<PowerSteps>(word); });
+  if (known) {
+    std::ranges::copy(*known, powers.begin());
     return;
   }
   follow(actors);
   std::ranges::copy(powers_, powers.begin());
-  std::ranges::transform(powers_, row_.begin(),
-                         [](PowerSteps power) { return std::bit_cast<PostureMemory::Word>(power); });
-  alone_.remember(person, row_);
+  alone_.remember(person, powers_);
 }
 
 void PowerMeter::measure(std::span<const PosedShape> solids, const BodyRadiance& radiance,

@@ -61,14 +61,13 @@ class PowerMeter {
   const PowerModel& power_;
   std::unique_ptr<rt::Tracer> tracer_;
   LeafNumbers leaves_;
-  PostureMemory alone_;             ///< powers of postures of who was alone
-  std::vector<Figure> figures_;     ///< (n_people)
-  std::vector<PowerSteps> powers_;  ///< (n_receivers) of figures_
+  PostureMemory<PowerSteps> alone_;  ///< powers of postures of who was alone
+  std::vector<Figure> figures_;      ///< (n_people)
+  std::vector<PowerSteps> powers_;   ///< (n_receivers) of figures_
   // Scratch.
   std::vector<Mannequin> mannequins_;  ///< (n_people)
   std::vector<rt::Moved> moved_;
   std::vector<rt::FirstHitChange> changes_;
-  std::vector<PostureMemory::Word> row_;
 };
 
 }  // namespace pirsim::sim
