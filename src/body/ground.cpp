@@ -144,8 +144,8 @@ void Ground::measure_steps(double reach_m) {
         const Step step = steps[static_cast<std::size_t>(direction)];
         if (!cells_->floor_at(column, row) || !cells_->floor_at(column + step.column, row + step.row)) continue;
         const double at_ends_m = std::min(room_here_m, room_at(column + step.column, row + step.row));
-        const double room_m = room_between(cells_->centre(column, row),
-                                           cells_->centre(column + step.column, row + step.row), reach_m);
+        const double room_m =
+            room_between(cells_->centre(column, row), cells_->centre(column + step.column, row + step.row), reach_m);
         if (room_m < at_ends_m) narrow_steps_.push_back({row * cells_->columns + column, direction, room_m});
       }
     }

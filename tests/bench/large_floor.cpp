@@ -31,9 +31,9 @@ Size size_of(int n_people) {
 void add_shell(SceneSpec& scene, const Size& size) {
   const auto& [w, d, columns] = size;
   const double t = 0.1, h = height_m;
-  scene.meshes = {box_mesh({0, -t, -d}, {w, 0, 0}),       box_mesh({0, h, -d}, {w, h + t, 0}),
-                  box_mesh({-t, 0, -d}, {0, h, 0}),       box_mesh({w, 0, -d}, {w + t, h, 0}),
-                  box_mesh({0, 0, -d - t}, {w, h, -d}),   box_mesh({0, 0, 0}, {0.5 * w - 1.0, h, t}),
+  scene.meshes = {box_mesh({0, -t, -d}, {w, 0, 0}),          box_mesh({0, h, -d}, {w, h + t, 0}),
+                  box_mesh({-t, 0, -d}, {0, h, 0}),          box_mesh({w, 0, -d}, {w + t, h, 0}),
+                  box_mesh({0, 0, -d - t}, {w, h, -d}),      box_mesh({0, 0, 0}, {0.5 * w - 1.0, h, t}),
                   box_mesh({0.5 * w + 1.0, 0, 0}, {w, h, t})};
   scene.floor = FloorArea({{{0, 0}, {w, 0}, {w, -d}, {0, -d}}}, 0.0);
   scene.entrances.push_back({"door", {{1, 0, 0, 0}, {0.5 * w, 0, 0}}});

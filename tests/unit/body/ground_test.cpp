@@ -82,7 +82,6 @@ TEST_CASE("a step is taken exactly where its whole line keeps clear, and its dia
   CHECK(narrow > 10);
 }
 
-
 TEST_CASE("there is a way exactly where one is found: from and to any place, among others", "[ground]") {
   Stream stream({.seed = 24});
   int found = 0, none = 0;
