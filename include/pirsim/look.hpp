@@ -142,14 +142,15 @@ struct PlacementScore {
   double blind_fraction = 0.0;
   double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
   std::vector<std::string> blind_seats;  ///< where no sensor sees the target
-  SeatsAtWork at_work{};                 ///< of somebody of natural style who types; of the ranked sets only
+  SeatsAtWork at_work{};                 ///< of somebody of natural style who types
   std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
 };
 
 struct PlacementSearch {
   PlacementScore even;   ///< spaced evenly along the lines
-  PlacementScore found;  ///< never covers less than `even`
-  int evaluations = 0;
+  PlacementScore found;  ///< never worse than `even`
+  int evaluations = 0;   ///< sets that were tried; by seats: places
+  bool gained = true;    ///< `found` is better than `even`
 };
 
 struct PlacementReport {
@@ -157,13 +158,14 @@ struct PlacementReport {
   std::optional<PlacementSearch> search;
   std::string text;             ///< for a reader, as `pirsim placements` prints it
   std::vector<Issue> warnings;  ///< of sensors that see nothing
+  SceneSpec best;               ///< the scene with the best set's sensors in place of its own
 };
 
 struct PlacementOptions {
   unsigned threads = 0;                ///< 0: all cores; changes no number
   std::filesystem::path scene_file{};  ///< beside which models of sensors are looked for
   io::SceneOptions scenes{};
-  std::function<void()> set_done{};  ///< after each set of the study, and each that the search has tried
+  std::function<void()> set_done{};  ///< after each set of the study, and each set or place that the search has tried
 };
 
 /// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input)

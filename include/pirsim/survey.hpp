@@ -67,11 +67,19 @@ struct PlacementSearchSpec {
   int n_sensors = 1;
   std::string model;
   std::vector<MountingLineSpec> lines;
-  int evaluations = 200;  ///< sensor sets that are tried
+  int evaluations = 200;  ///< sensor sets that are tried; by seats: places of one sensor
+};
+
+/// What sets are ranked by, and what a search looks for.
+enum class PlacementAim {
+  area,   ///< floor where the target is noticed
+  seats,  ///< seats where somebody at work is noticed; among equals, area
 };
 
 struct PlacementSpec {
   CoverageSpec coverage;  ///< by which sets are judged
+  PlacementAim by = PlacementAim::area;
+  Where by_where{};  ///< for messages
   std::vector<SensorSetSpec> sets;
   std::optional<PlacementSearchSpec> search;
   std::map<std::string, Where> models;  ///< of sensors: where each is named first, for messages

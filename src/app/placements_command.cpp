@@ -5,28 +5,63 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/pages/png.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/look.hpp"
+#include "studies/placement_page.hpp"
 
 namespace pirsim::app {
 namespace {
 
-void placements(const Inputs& inputs, unsigned threads) {
-  const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  tell(scene.warnings, inputs.verbosity);
-  PlacementOptions options{threads, inputs.scene, scene_options(inputs)};
-  std::optional<Progress> progress;
+struct PlacementsOptions {
+  std::filesystem::path scene;   ///< .gltf, .glb
+  std::filesystem::path report;  ///< .html
+  std::filesystem::path maps;    ///< folder
+  unsigned threads = 0;
+};
+
+PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs, unsigned threads,
+                        const StopRequest& stop) {
   const auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
-  progress.emplace(Work{"scoring sets of sensors", spec.sets.size() + n_tried, "sets"}, inputs.verbosity);
-  const StopRequest stop;
+  Progress progress({"scoring sets of sensors", spec.sets.size() + n_tried, "sets"}, inputs.verbosity);
+  PlacementOptions options{threads, inputs.scene, scene_options(inputs)};
   options.set_done = [&] {
-    progress->finished();
+    progress.finished();
     stop.throw_if_made();
   };
-  const PlacementReport report = run_placements(std::move(scene), spec, options);
-  progress.reset();
+  return run_placements(scene, spec, options);
+}
+
+void draw_maps(const studies::PlacementViews& views, const std::filesystem::path& folder) {
+  const auto write = [&](const char* name, const std::optional<studies::PlacementView>& view) {
+    if (!view) return;
+    const io::Pixels picture = io::drawn(view->map);
+    io::write_png(folder / name, picture.width, picture.height, picture.rgb);
+  };
+  make_folder(folder);
+  write("before.png", views.before);
+  write("after.png", views.after);
+}
+
+void placements(const Inputs& inputs, const PlacementsOptions& options) {
+  check_outputs({{"-o", options.scene, {".gltf", ".glb"}}, {"--report", options.report, {".html"}}}, inputs);
+  const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
+  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  keep_inputs({{"-o", options.scene}, {"--report", options.report}}, files_read({}, scene));
+  tell(scene.warnings, inputs.verbosity);
+  std::optional<io::AtomicFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report);
+  const StopRequest stop;
+  const PlacementReport report = compare(scene, spec, inputs, options.threads, stop);
   tell(report.warnings, inputs.verbosity);
+  if (!options.scene.empty()) io::write_scene(options.scene, report.best);
+  if (report_file || !options.maps.empty()) {
+    const studies::PlacementViews views = studies::views_of(scene, spec, report, options.threads);
+    stop.throw_if_made();
+    if (report_file) write_page(*report_file, studies::placement_report(scene, spec, report, views), inputs);
+    if (!options.maps.empty()) draw_maps(views, options.maps);
+  }
   std::cout << report.text;
   require_written();
 }
@@ -36,14 +71,19 @@ void placements(const Inputs& inputs, unsigned threads) {
 void add_placements_command(CLI::App& app) {
   CLI::App& command = add_command(app, "placements", "rank sets of sensors, and look for a better one", R"(
   pirsim placements --scene room.gltf --script placements.yaml
+  pirsim placements --scene room.gltf --script placements.yaml --set by=seats -o better.gltf --report sets.html
   pirsim placements --scene room.gltf --script placements.yaml --set search.evaluations=2000
 )");
   const auto inputs = std::make_shared<Inputs>();
-  const auto threads = std::make_shared<unsigned>(0);
+  const auto options = std::make_shared<PlacementsOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_threads(command, *threads);
-  on_call(command, inputs, [threads](const Inputs& given) { placements(given, *threads); });
+  offer_output(command, options->scene, "FILE", "the scene with the best set's sensors, .gltf or .glb");
+  offer_map_report(command, options->report);
+  command.add_option("--maps", options->maps, "folder for before.png and after.png: the scene's own set, the best one")
+      ->option_text("DIR");
+  offer_threads(command, options->threads);
+  on_call(command, inputs, [options](const Inputs& given) { placements(given, *options); });
 }
 
 }  // namespace pirsim::app

@@ -715,7 +715,15 @@ struct Fields<PlacementSearchSpec> {
   using S = PlacementSearchSpec;
   static constexpr std::tuple all{
       FIELD(n_sensors, IntegerRange{.min = 1, .max = 20}), FIELD(model), FIELD(lines),
-      FIELD(evaluations, IntegerRange{.min = 1, .max = 100000}, "sensor sets that are tried")};
+      FIELD(evaluations, IntegerRange{.min = 1, .max = 100000},
+            "sensor sets that are tried; by seats: places of one sensor, evenly along the lines")};
+};
+template <>
+struct Fields<PlacementSpec> {
+  using S = PlacementSpec;
+  static constexpr std::tuple all{FIELD(coverage), FIELD(by, "what sets are ranked by and a search looks for"),
+                                  LABEL(by_where), FIELD(sets),
+                                  FIELD(search),   LABEL(models)};
 };
 template <>
 struct Fields<WalkRequirement> {

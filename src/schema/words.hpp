@@ -9,6 +9,7 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
+#include "pirsim/survey.hpp"
 
 namespace pirsim {
 
@@ -45,6 +46,10 @@ struct Words<DoorState> {
 template <>
 struct Words<Response> {
   static constexpr WordList<Response, 2> all{{{"zones", Response::zones}, {"analog", Response::analog}}};
+};
+template <>
+struct Words<PlacementAim> {
+  static constexpr WordList<PlacementAim, 2> all{{{"area", PlacementAim::area}, {"seats", PlacementAim::seats}}};
 };
 template <>
 struct Words<PulseSigns> {

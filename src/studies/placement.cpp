@@ -1,10 +1,7 @@
 #include "studies/placement.hpp"
 
 #include <algorithm>
-#include <exception>
-#include <glm/geometric.hpp>
 #include <iomanip>
-#include <nlopt.hpp>
 #include <sstream>
 #include <utility>
 
@@ -12,9 +9,8 @@
 #include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/response.hpp"
-#include "studies/coverage.hpp"
+#include "studies/placement_search.hpp"
 #include "studies/sight.hpp"
-#include "studies/sitters.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -33,60 +29,6 @@ double overlap_of(const CoverageMap& map) {
   return seen == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(seen);
 }
 
-/// The search as NLopt calls it.
-struct Objective {
-  const SceneSpec& scene;
-  const CoverageSpec& coverage;
-  const PlacementSearchSpec& search;
-  unsigned threads;
-  const std::function<void()>& set_done;
-  int evaluations = 0;
-  double best_area = -1.0;
-  std::vector<double> best;
-  std::exception_ptr fault{};  ///< which NLopt would replace by its own
-
-  double area(const std::vector<double>& shares) {
-    ++evaluations;
-    set_done();
-    const double seen = score(scene, coverage, sensors_along(search, shares, ""), threads).seen_area_m2;
-    if (seen > best_area) {
-      best_area = seen;
-      best = shares;
-    }
-    return seen;
-  }
-};
-
-void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations) {
-  if (evaluations < 1) return;
-  nlopt::opt optimiser(algorithm, static_cast<unsigned>(objective.search.n_sensors));
-  optimiser.set_lower_bounds(0.0);
-  optimiser.set_upper_bounds(1.0);
-  optimiser.set_maxeval(evaluations);
-  optimiser.set_xtol_abs(1e-3);
-  optimiser.set_initial_step(0.1);
-  optimiser.set_max_objective(
-      [](const std::vector<double>& shares, std::vector<double>&, void* data) {
-        auto& called = *static_cast<Objective*>(data);
-        try {
-          return called.area(shares);
-        } catch (...) {
-          called.fault = std::current_exception();
-          throw nlopt::forced_stop();
-        }
-      },
-      &objective);
-  std::vector<double> shares = objective.best;
-  double area = 0.0;
-  try {
-    optimiser.optimize(shares, area);
-  } catch (const nlopt::roundoff_limited&) {
-    // The best so far is kept: no further progress is possible.
-  } catch (const nlopt::forced_stop&) {
-    std::rethrow_exception(objective.fault);
-  }
-}
-
 /// Sensors of a map and of the counts at seats that see nothing.
 std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::vector<MotionCount>>& at_seats) {
   const std::size_t n_sensors = map.sensors.size();
@@ -103,14 +45,14 @@ std::string listed(const std::vector<std::string>& names) { return names.empty()
 
 }  // namespace
 
-namespace {
-
-CoverageStudy study_of(SceneSpec scene, const CoverageSpec& coverage, const SensorSetSpec& set) {
+SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set) {
   if (!set.sensors.empty()) scene.sensors = set.sensors;
-  return {std::move(scene), coverage};
+  return scene;
 }
 
-}  // namespace
+CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set) {
+  return {with_set(scene, set), coverage};
+}
 
 PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
   const CoverageStudy study = study_of(scene, coverage, set);
@@ -126,13 +68,16 @@ PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, Senso
   return result;
 }
 
-SeatsAtWork seats_at_work(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set,
-                          unsigned threads) {
-  const CoverageStudy study = study_of(scene, coverage, set);
+WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads) {
   const SurveyBase& survey = study.survey();
   return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer, survey.seed()},
-                       usual_worker(), threads)
-      .by_any();
+                       usual_worker(), threads, tried);
+}
+
+SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
+                          unsigned threads) {
+  const SeatsTried tried = spec.by == PlacementAim::seats ? SeatsTried::all : SeatsTried::some;
+  return watch_workers(study_of(scene, spec.coverage, set), tried, threads).by_any();
 }
 
 std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor) {
@@ -152,50 +97,21 @@ std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorA
   return remarks.issues();
 }
 
-std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores) {
-  std::ranges::stable_sort(scores, [](const PlacementScore& a, const PlacementScore& b) {
+std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, PlacementAim by) {
+  std::ranges::stable_sort(scores, [by](const PlacementScore& a, const PlacementScore& b) {
+    if (by == PlacementAim::seats && a.at_work.noticed.size() != b.at_work.noticed.size())
+      return a.at_work.noticed.size() > b.at_work.noticed.size();
     if (a.seen_area_m2 != b.seen_area_m2) return a.seen_area_m2 > b.seen_area_m2;
     return a.blind_seats.size() < b.blind_seats.size();
   });
   return scores;
 }
 
-SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
-  double total = 0.0;
-  for (const MountingLineSpec& line : search.lines) total += glm::distance(line.from, line.to);
-  SensorSetSpec set{std::move(id), {}};
-  for (const double share : shares) {
-    double along = share * total;
-    std::size_t i = 0;
-    while (i + 1 < search.lines.size() && along > glm::distance(search.lines[i].from, search.lines[i].to)) {
-      along -= glm::distance(search.lines[i].from, search.lines[i].to);
-      ++i;
-    }
-    const MountingLineSpec& line = search.lines[i];
-    const double length = glm::distance(line.from, line.to);
-    const double part = length > 0.0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
-    set.sensors.push_back({"PIR" + std::to_string(set.sensors.size() + 1), search.model,
-                           mounted(line.from + part * (line.to - line.from), line.yaw_deg, line.tilt_deg)});
-  }
-  return set;
-}
-
-PlacementSearch search_placement(const SceneSpec& scene, const CoverageSpec& coverage,
-                                 const PlacementSearchSpec& search, unsigned threads,
-                                 const std::function<void()>& set_done) {
-  std::vector<double> even;
-  for (int i = 0; i < search.n_sensors; ++i) even.push_back((i + 0.5) / search.n_sensors);
-  Objective objective{scene, coverage, search, threads, set_done, 0, -1.0, {}};
-  static_cast<void>(objective.area(even));
-  maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
-  maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);
-  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, coverage, sensors_along(search, objective.best, "found"), threads), objective.evaluations};
-}
-
-std::string to_text(const std::vector<PlacementScore>& scores) {
+std::string to_text(const std::vector<PlacementScore>& scores, PlacementAim by) {
   std::ostringstream out;
-  out << "                                       seats at work\n"
+  out << (by == PlacementAim::seats ? "ranked by seats where somebody at work is noticed, then by seen area\n"
+                                    : "ranked by seen area\n")
+      << "                                       seats at work\n"
          "  rank  seen, m2  blind, %  overlap, %  noticed  deaf  unseen  set (blind seats; deaf to work in)\n"
       << std::fixed;
   for (std::size_t i = 0; i < scores.size(); ++i) {
@@ -208,11 +124,31 @@ std::string to_text(const std::vector<PlacementScore>& scores) {
   return out.str();
 }
 
-std::string to_text(const PlacementSearch& search) {
+namespace {
+
+/// "17.23 m2 found, 1.20 m2 more than even spacing (16.03 m2)"
+std::string gain_by_area(const PlacementSearch& search) {
+  const double found = search.found.seen_area_m2, even = search.even.seen_area_m2;
+  return fixed(found, 2) + " m2 found, " + fixed(found - even, 2) + " m2 more than even spacing (" + fixed(even, 2) +
+         " m2)";
+}
+
+/// "38 seats noticed and 41.00 m2 seen, even spacing 24 and 39.00 m2"
+std::string gain_by_seats(const PlacementSearch& search) {
+  const auto noticed = [](const PlacementScore& score) { return std::to_string(score.at_work.noticed.size()); };
+  return noticed(search.found) + " seats noticed and " + fixed(search.found.seen_area_m2, 2) +
+         " m2 seen, with even spacing " + noticed(search.even) + " and " + fixed(search.even.seen_area_m2, 2) + " m2";
+}
+
+}  // namespace
+
+std::string to_text(const PlacementSearch& search, PlacementAim by) {
   std::ostringstream out;
-  out << std::fixed << std::setprecision(2) << search.evaluations << " sets tried: " << search.found.seen_area_m2
-      << " m2 found, " << search.found.seen_area_m2 - search.even.seen_area_m2 << " m2 more than even spacing ("
-      << search.even.seen_area_m2 << " m2). Sensors at:\n";
+  out << search.evaluations
+      << (by == PlacementAim::seats ? " places tried: " + gain_by_seats(search)
+                                    : " sets tried: " + gain_by_area(search))
+      << (search.gained ? "" : "; the search found nothing better than even spacing") << ". Sensors at:\n"
+      << std::fixed << std::setprecision(2);
   for (const SensorSpec& sensor : search.found.set.sensors) {
     const Vec3 p = sensor.world_from_sensor.origin;
     out << "  " << sensor.id << "  " << p.x << ' ' << p.y << ' ' << p.z << '\n';
@@ -245,29 +181,53 @@ std::vector<Issue> idle_keys(const SceneSpec& scene, const PlacementSpec& spec) 
   return idle_sensor_keys(hung, spec.coverage.sensing);
 }
 
+void require_seats(const SceneSpec& scene, const PlacementSpec& spec) {
+  if (!scene.seats.empty()) return;
+  Diagnostics faults;
+  faults.error(spec.by_where, "by: seats: " + scene.name + " has no seat (by: area ranks by the floor that is seen)");
+  faults.throw_if_errors();
+}
+
+/// What sensors notice together may differ from what they notice one by one: effects draw anew for each of a set.
+void keep_the_better(PlacementSearch& search, PlacementAim by) {
+  search.gained = studies::ranked({search.even, search.found}, by).front().set.id == search.found.set.id;
+  if (search.gained) return;
+  const std::string id = search.found.set.id;
+  search.found = search.even;
+  search.found.set.id = id;
+}
+
 }  // namespace
 
 PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
+  if (spec.by == PlacementAim::seats) require_seats(scene, spec);
   add_models(scene, spec, options);
   PlacementReport report;
   const auto set_done = options.set_done ? options.set_done : [] {};
+  const auto watch_seats = [&](PlacementScore& score) {
+    score.at_work = studies::seats_at_work(scene, spec, score.set, options.threads);
+  };
   for (const SensorSetSpec& set : spec.sets) {
     report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
+    watch_seats(report.ranked.back());
     set_done();
   }
   report.warnings = studies::warnings(report.ranked, scene.floor);
   const std::vector<Issue> idle = idle_keys(scene, spec);
   report.warnings.insert(report.warnings.end(), idle.begin(), idle.end());
   if (spec.search) {
-    report.search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads, set_done);
-    report.ranked.push_back(report.search->even);
-    report.ranked.push_back(report.search->found);
+    report.search = studies::search_placement(scene, spec, *spec.search, options.threads, set_done);
+    PlacementSearch& search = *report.search;
+    watch_seats(search.even);
+    watch_seats(search.found);
+    keep_the_better(search, spec.by);
+    report.ranked.push_back(search.even);
+    report.ranked.push_back(search.found);
   }
-  report.ranked = studies::ranked(std::move(report.ranked));
-  for (PlacementScore& score : report.ranked) {
-    score.at_work = studies::seats_at_work(scene, spec.coverage, score.set, options.threads);
-  }
-  report.text = studies::to_text(report.ranked) + (report.search ? studies::to_text(*report.search) : "");
+  report.ranked = studies::ranked(std::move(report.ranked), spec.by);
+  report.text =
+      studies::to_text(report.ranked, spec.by) + (report.search ? studies::to_text(*report.search, spec.by) : "");
+  report.best = report.ranked.empty() ? std::move(scene) : studies::with_set(std::move(scene), report.ranked[0].set);
   return report;
 }
 

@@ -1,7 +1,6 @@
 // Which set of sensors covers a room best, and could another one do better?
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +8,8 @@
 #include "pirsim/look.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/survey.hpp"
+#include "studies/coverage.hpp"
+#include "studies/sitters.hpp"
 
 namespace pirsim::studies {
 
@@ -19,25 +20,23 @@ namespace pirsim::studies {
 [[nodiscard]] PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set,
                                    unsigned threads = 0);
 
-/// Somebody of natural style at work in each seat, in sight of the set. Throws as score() does.
-[[nodiscard]] SeatsAtWork seats_at_work(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set,
+/// The scene with the set's sensors; its own if the set has none.
+[[nodiscard]] SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set);
+[[nodiscard]] CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set);
+
+/// Somebody of natural style at work in each seat, in sight of the study's sensors.
+[[nodiscard]] WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads = 0);
+/// By seats all of them are tried. Throws as score() does.
+[[nodiscard]] SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
                                         unsigned threads = 0);
 
-/// Greatest seen area first; ties: fewer blind seats, then the order given.
-[[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores);
+/// Best first. By area: fewer blind seats decide among equals. By seats: area, then fewer blind seats. Then the order
+/// given.
+[[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores,
+                                                 PlacementAim by = PlacementAim::area);
 
-/// Looks for the sensors' places along the lines that cover most: NLopt's DIRECT-L over all of them, then SBPLX from
-/// the best. Both are deterministic. `set_done` is called after each set that was tried. Ref: [Gablonsky2001],
-/// [Rowan1990].
-[[nodiscard]] PlacementSearch search_placement(
-    const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search, unsigned threads = 0,
-    const std::function<void()>& set_done = [] {});
-
-/// Sensors at these shares, in [0, 1], of the lines' joint length.
-[[nodiscard]] SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares,
-                                          std::string id);
-
-[[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores);
-[[nodiscard]] std::string to_text(const PlacementSearch& search);
+/// A line that says what sets are ranked by, then one a set.
+[[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores, PlacementAim by);
+[[nodiscard]] std::string to_text(const PlacementSearch& search, PlacementAim by);
 
 }  // namespace pirsim::studies

@@ -15,12 +15,12 @@
 namespace pirsim::studies {
 namespace {
 
-struct Extent {
+struct MeshExtent {
   Vec3 lower{1e9}, upper{-1e9};
 };
 
-Extent extent(const TriMesh& mesh) {
-  Extent result;
+MeshExtent bounds_of(const TriMesh& mesh) {
+  MeshExtent result;
   for (const Vec3& p : mesh.positions) {
     result.lower = glm::min(result.lower, p);
     result.upper = glm::max(result.upper, p);
@@ -98,7 +98,7 @@ void add_wall(const TriMesh& mesh, double floor_height_m, io::RoomPlan& plan) {
 
 MeshRole role_of(const TriMesh& mesh, double floor_height_m) {
   constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
-  const Extent e = extent(mesh);
+  const MeshExtent e = bounds_of(mesh);
   const Vec3 size = e.upper - e.lower;
   const bool is_high = e.lower.y >= floor_height_m + wall_height_m;
   if (is_high && size.y < std::min(size.x, size.z)) return MeshRole::ceiling;

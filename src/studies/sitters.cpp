@@ -190,7 +190,7 @@ Worker worker_of(std::span<const sim::TrialModel> trials) {
   return usual_worker();
 }
 
-WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads) {
+WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads, SeatsTried tried) {
   const body::Humanoid humanoid(worker.person);
   const double floor_y = room.scene.floor.height_m();
   const std::vector<SeatSpec>& seats = room.scene.seats;
@@ -198,7 +198,9 @@ WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned
   report.seconds = worker.person.style == MotionStyle::natural ? natural_work_s : choreographed_work_s;
   std::vector<body::SeatPlace> places;
   const std::size_t most =
-      std::clamp<std::size_t>(most_pairs / std::max<std::size_t>(1, room.scene.sensors.size()), 1, most_seats);
+      tried == SeatsTried::all
+          ? seats.size()
+          : std::clamp<std::size_t>(most_pairs / std::max<std::size_t>(1, room.scene.sensors.size()), 1, most_seats);
   for (std::size_t i = 0, n = std::min(seats.size(), most); i < n; ++i) {
     const SeatSpec& seat = seats[i * seats.size() / n];
     const body::SeatPlace place{seat.world_from_seat, floor_y, sim::table_height(seat, floor_y, room.array.room())};

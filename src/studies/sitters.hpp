@@ -32,11 +32,15 @@ struct WatchedRoom {
   std::uint64_t seed = 1;
 };
 
+/// Some: of more than thirty seats, thirty are tried, spread evenly over their list, and fewer with more than twenty
+/// sensors.
+enum class SeatsTried { some, all };
+
 /// Lets the worker sit in every seat, alone, and asks the sensors' own detectors at every tick. Seats that the worker
-/// can't sit on are left out. Of more than thirty seats, thirty are tried, spread evenly over their list, and fewer
-/// with more than twenty sensors. What effects do to triggers is left out. threads 0: all cores; changes nothing in the
+/// can't sit on are left out. What effects do to triggers is left out. threads 0: all cores; changes nothing in the
 /// result.
-[[nodiscard]] WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads = 0);
+[[nodiscard]] WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads = 0,
+                                       SeatsTried tried = SeatsTried::some);
 
 /// Seated and settled, hands on the thighs. Throws Error(infeasible) if the seat's height can't be sat on.
 [[nodiscard]] body::Motion seated(const body::Humanoid& humanoid, const body::SeatPlace& place, double tick_s);

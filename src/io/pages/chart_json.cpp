@@ -59,6 +59,10 @@ Json to_json(const MapChart& chart) {
             {"walls", polygon_groups(chart.plan.walls)},
             {"wall_lines", polygons(chart.plan.wall_lines)},
             {"dashed", polygons(chart.dashed)}};
+  json["ringed"] = Json::array();
+  for (const Vec2& point : chart.ringed) {
+    json["ringed"].push_back({{"x", point.x}, {"z", point.y}, {"label", chart.ringed_as}});
+  }
   Json values = Json::array();
   for (const auto& value : chart.values) values.push_back(value ? number(*value) : Json(nullptr));
   json["values"] = std::move(values);

@@ -59,6 +59,8 @@ struct MapChart {
   std::vector<Class> classes{};           ///< on pages: a colour for each instead of the scale, the first one's is pale
   RoomPlan plan;                          ///< drawn over the squares
   std::vector<std::vector<Vec2>> dashed;  ///< closed polygons, drawn dashed: what was taken out
+  std::vector<Vec2> ringed{};             ///< points with an orange ring
+  std::string ringed_as{};                ///< what a ring means
   std::vector<Marker> markers;
   Signs signs = Signs::sensors;
 };

@@ -55,7 +55,8 @@ constexpr int line_px = 30;       ///< of the key below the map
 constexpr double text_px = 17.0;  ///< in the key
 constexpr double sign_px = 34.0;  ///< width of a sign in the key, beside its name
 constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0), door_green(45.0, 164.0, 78.0),
-    area_purple(130.0, 60.0, 170.0), pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
+    area_purple(130.0, 60.0, 170.0), ring_orange(255.0, 127.0, 14.0), pass_blue(127.0, 184.0, 230.0),
+    fail_orange(224.0, 164.0, 88.0);
 
 /// Viridis by nine of its colours (Smith and van der Walt, CC0); `share` is from 0 to 1.
 Vec3 viridis(double share) {
@@ -101,6 +102,7 @@ class MapPicture {
     }
     for (const MapChart::Marker& at : chart_.plan.seats) seat(pixel_of(at.point), at.heading);
     for (const auto& loop : chart_.dashed) polygon(loop, white, long_dashes);
+    for (const Vec2& point : chart_.ringed) ring(pixel_of(point));
     for (const MapChart::Marker& at : chart_.markers) arrow(pixel_of(at.point), at.heading);
     write_names();
     write_key();
@@ -142,6 +144,7 @@ class MapPicture {
     }
     add(!chart_.markers.empty(), "sensor", [this](const Vec2& at) { arrow(at + Vec2(4.0, 0.0), -0.5 * pi); });
     add(!chart_.plan.seats.empty(), "seat", [this](const Vec2& at) { seat(at + Vec2(12.0, 0.0), -0.5 * pi); });
+    add(!chart_.ringed.empty(), chart_.ringed_as, [this](const Vec2& at) { ring(at + Vec2(0.5 * sign_px, 0.0)); });
     add(!chart_.plan.doors.empty(), "door", [=, this](const Vec2& at) {
       for (const double aside : {-1.5, 1.5}) line(at + aside, at + along + aside, door_green, no_dashes);
     });
@@ -194,6 +197,15 @@ class MapPicture {
       const Vec2 extent = text_extent(entries[i].text, text_px);
       const double left = places[i].x + entries[i].sign_px + (entries[i].sign_px > 0.0 ? gap_px : 0.0);
       write_text(pixels_, {left + 0.5 * extent.x, places[i].y + 0.5 * extent.y}, entries[i].text, text_px, black);
+    }
+  }
+
+  /// Three strokes wide.
+  void ring(const Vec2& middle) {
+    constexpr int n_sides = 32;
+    for (const double radius_px : {13.0, 14.0, 15.0}) {
+      const auto corner = [&](int i) { return middle + radius_px * direction_of(2.0 * pi * i / n_sides); };
+      for (int i = 0; i < n_sides; ++i) line(corner(i), corner(i + 1), ring_orange, no_dashes);
     }
   }
 

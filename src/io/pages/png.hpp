@@ -17,8 +17,9 @@ struct Pixels {
 };
 
 /// Squares in the colours that pages use (viridis, from 0 to `max`), white off the floor, outlines black, furniture
-/// black and white, `dashed` polygons white, doors green, a white disc with a nose for each seat, and a red arrow from
-/// each marker, both the way they face. Below the map: its title, what the colours and signs mean, and a scale.
+/// black and white, `dashed` polygons white, doors green, a white disc with a nose for each seat, an orange ring round
+/// each of `ringed`, and a red arrow from each marker; discs and arrows point the way they face. Below the map: its
+/// title, what the colours and signs mean, and a scale.
 [[nodiscard]] Pixels drawn(const MapChart& chart);
 
 /// The bytes of a PNG file; rgb as in Pixels. Throws Error(usage) if the sizes don't match.

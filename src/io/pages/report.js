@@ -106,6 +106,7 @@
         { name: "areas", values: points(chart.areas.flatMap(({ loops }) => loops)) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
         { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
+        { name: "ringed", values: chart.ringed },
         { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors },
         { name: "sweeps", values: points(chart.sweeps) }, ...wall.data],
       scales: [
@@ -133,6 +134,9 @@
         { type: "symbol", from: { data: "seats" }, encode: { enter: Object.assign({ shape: { value: "triangle-up" },
           size: { value: 45 }, angle: { field: "angle_deg" }, fill: { value: "#ffffff" }, stroke: { value: "#000000" },
           strokeWidth: { value: 1 }, tooltip: { signal: "'seat ' + datum.label" } }, at) } },
+        { type: "symbol", from: { data: "ringed" }, encode: { enter: Object.assign({ shape: { value: "circle" },
+          size: { value: 260 }, stroke: { value: "#ff7f0e" }, strokeWidth: { value: 3 },
+          tooltip: { field: "label" } }, at) } },
         { type: "symbol", from: { data: "markers" }, encode: { enter: {
           x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" },
           shape: { value: chart.people ? "circle" : "triangle-up" }, size: { value: 110 }, angle: { field: "angle_deg" },

@@ -160,7 +160,17 @@ PlacementSpec read_placements(const std::filesystem::path& file, std::span<const
       if (!ids.insert(spec.sets.back().id).second)
         map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
     }
-    if (const auto search = map.child("search")) spec.search = read_search(*search, spec.models, map.faults());
+    read_fields(map, spec);
+    if (map.has("by")) spec.by_where = map.where("by");
+    if (const auto search = map.child("search")) {
+      spec.search = read_search(*search, spec.models, map.faults());
+      if (spec.by == PlacementAim::seats && spec.search->evaluations < spec.search->n_sensors) {
+        map.faults().error(search->where(), "search: " + std::to_string(spec.search->n_sensors) +
+                                                " sensors need as many places: evaluations, by seats the number of "
+                                                "places, is " +
+                                                std::to_string(spec.search->evaluations));
+      }
+    }
     return spec;
   });
 }

@@ -1,9 +1,17 @@
 #include "studies/placement.hpp"
 
+#include <bit>
+#include <filesystem>
 #include <glm/geometric.hpp>
+#include <set>
 
 #include "pirsim/geometry.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/model.hpp"
+#include "studies/placement_search.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace pirsim;
 using namespace pirsim::studies;
@@ -40,6 +48,12 @@ PlacementSearchSpec along_the_islands(int n_sensors, int evaluations) {
   return {n_sensors, "needle", {{{0, 2.6, 0}, {10, 2.6, 0}, 0.0, 90.0}}, evaluations};
 }
 
+PlacementSpec by_area() {
+  PlacementSpec spec;
+  spec.coverage = fine();
+  return spec;
+}
+
 double area_with(const std::vector<double>& shares) {
   return score(two_islands(), fine(), sensors_along(along_the_islands(2, 1), shares, "")).seen_area_m2;
 }
@@ -52,7 +66,7 @@ TEST_CASE("the search finds what is best by construction: one sensor over each i
   REQUIRE(best > 0.05);
   REQUIRE(area_with({0.15, 0.155}) < 1.5 * best);  // both over one island are worse
 
-  const PlacementSearch search = search_placement(two_islands(), fine(), along_the_islands(2, 200));
+  const PlacementSearch search = search_placement(two_islands(), by_area(), along_the_islands(2, 200));
   CHECK(search.found.seen_area_m2 > 0.95 * 2.0 * best);
   CHECK(search.even.seen_area_m2 < best * 1.01);  // 2.5 and 7.5: one of them over an island
   CHECK(search.evaluations <= 200);
@@ -64,7 +78,7 @@ TEST_CASE("the search finds what is best by construction: one sensor over each i
 }
 
 TEST_CASE("a search without time to look is even spacing, and gains nothing", "[placement]") {
-  const PlacementSearch search = search_placement(two_islands(), fine(), along_the_islands(2, 1));
+  const PlacementSearch search = search_placement(two_islands(), by_area(), along_the_islands(2, 1));
   CHECK(search.found.seen_area_m2 == search.even.seen_area_m2);
   CHECK(search.found.set.sensors[0].world_from_sensor.origin.x == Approx(2.5));
   CHECK(search.found.set.sensors[1].world_from_sensor.origin.x == Approx(7.5));
@@ -109,6 +123,130 @@ TEST_CASE("a needle into a sitter's middle sees them and is deaf to their work, 
   }
   CHECK(report.text.find("noticed  deaf  unseen") != std::string::npos);
   CHECK(report.text.find("; left)") != std::string::npos);
+}
+
+namespace {
+
+SceneSpec meeting_room() { return io::read_scene(test::data_dir() / "rooms/meeting_room.gltf"); }
+
+/// Ten desks in a meeting room under ceiling sensors that hang lengthwise or over the sensors' wall.
+PlacementSpec by_seats(int n_sensors, int places) {
+  PlacementSpec spec;
+  spec.by = PlacementAim::seats;
+  spec.coverage.sensing.tick_rate_hz = 10;
+  spec.coverage.sensing.ticks_per_window = 10;
+  spec.coverage.spacing_m = 0.5;
+  spec.coverage.duration_s = 2.0;
+  spec.models["EKMC1601111"] = {};
+  spec.search = {n_sensors,
+                 "EKMC1601111",
+                 {{{0.5, 2.6, -1.2}, {6.5, 2.6, -1.2}, 0.0, 90.0}, {{0.5, 2.6, -3.2}, {6.5, 2.6, -3.2}, 0.0, 90.0}},
+                 places};
+  return spec;
+}
+
+}  // namespace
+
+TEST_CASE("by seats, no other subset of the tried places is noticed in more seats or, with as many, on more floor",
+          "[placement][seconds]") {
+  constexpr int n_places = 8, n_sensors = 2;
+  PlacementSpec spec = by_seats(n_sensors, n_places);
+  SceneSpec scene = meeting_room();
+  const PlacementReport report = run_placements(scene, spec);
+  scene.sensor_models = report.best.sensor_models;
+  std::pair<std::size_t, double> most;
+  for (unsigned subset = 0; subset < 1U << n_places; ++subset) {
+    if (std::popcount(subset) != n_sensors) continue;
+    std::vector<double> shares;
+    for (int i = 0; i < n_places; ++i) {
+      if ((subset >> i & 1U) != 0) shares.push_back((i + 0.5) / n_places);
+    }
+    const SensorSetSpec set = sensors_along(*spec.search, shares, "");
+    most = std::max(most, {seats_at_work(scene, spec, set).noticed.size(), score(scene, spec.coverage, set).seen_area_m2});
+  }
+  const PlacementScore& found = report.search->found;
+  CHECK(std::pair(found.at_work.noticed.size(), found.seen_area_m2) >= most);
+  CHECK(most.first > 0);
+  CHECK(report.ranked[0].at_work.noticed.size() >= report.search->even.at_work.noticed.size());
+  CHECK(report.text.find("8 places tried: ") != std::string::npos);
+}
+
+TEST_CASE("what sensors notice together is what they notice one by one", "[placement][seconds]") {
+  PlacementSpec spec = by_seats(3, 3);
+  SceneSpec scene = meeting_room();
+  scene.sensor_models = run_placements(scene, spec).best.sensor_models;
+  const std::vector<double> shares{0.1, 0.4, 0.9};
+  std::set<std::string> one_by_one;
+  for (const double share : shares) {
+    for (const auto& seat : seats_at_work(scene, spec, sensors_along(*spec.search, {share}, "")).noticed)
+      one_by_one.insert(seat);
+  }
+  const SeatsAtWork together = seats_at_work(scene, spec, sensors_along(*spec.search, shares, ""));
+  CHECK(std::set<std::string>(together.noticed.begin(), together.noticed.end()) == one_by_one);
+  const Cover cover = cover_of(scene, spec, *spec.search, shares, 1, [] {});
+  const std::uint64_t of_a_seat = cover.worth.front();
+  CHECK(cover.worth_of({0, 1, 2}) / of_a_seat == one_by_one.size());
+}
+
+TEST_CASE("by seats a set counts as many as `check` tells of its sensors", "[placement][seconds]") {
+  PlacementSpec spec = by_seats(3, 3);
+  spec.search.reset();
+  spec.sets = {{"as built", {}}};
+  const PlacementReport report = run_placements(meeting_room(), spec);
+  ScriptSpec script;
+  script.sensing = spec.coverage.sensing;
+  script.trials = {{}};  // nobody works at a desk, so `check` has the usual worker
+  script.trials[0].id = "empty";
+  script.trials[0].duration_s = 10.0;
+  const WorkReport checked = check_study(compile(meeting_room(), script)).work;
+  CHECK(report.ranked[0].at_work.noticed == checked.by_any().noticed);
+  CHECK(report.ranked[0].at_work.deaf == checked.by_any().deaf);
+  CHECK(checked.seats.size() == 10);
+}
+
+TEST_CASE("sets are ranked by noticed seats before area, and by area alone if so asked", "[placement]") {
+  PlacementScore wide, useful;
+  wide.set.id = "wide";
+  wide.seen_area_m2 = 9.0;
+  useful.set.id = "useful";
+  useful.seen_area_m2 = 1.0;
+  useful.at_work.noticed = {"S1"};
+  CHECK(ranked({wide, useful}, PlacementAim::seats)[0].set.id == "useful");
+  CHECK(ranked({useful, wide}, PlacementAim::area)[0].set.id == "wide");
+  wide.at_work.noticed = {"S2"};
+  CHECK(ranked({useful, wide}, PlacementAim::seats)[0].set.id == "wide");
+}
+
+TEST_CASE("the scene with the best set, written and read back, has the same sensors and the same seats noticed",
+          "[placement][seconds]") {
+  PlacementSpec spec = by_seats(2, 6);
+  const PlacementReport report = run_placements(meeting_room(), spec);
+  const TemporaryFolder folder;
+  io::write_scene(folder.path() / "better.gltf", report.best);
+  const SceneSpec back = io::read_scene(folder.path() / "better.gltf", {.sensor_directories = {test::data_dir() / "sensors"}});
+  const std::vector<SensorSpec>& sensors = report.ranked[0].set.sensors;
+  REQUIRE(back.sensors.size() == sensors.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    CHECK(back.sensors[i].id == sensors[i].id);
+    CHECK(back.sensors[i].model == sensors[i].model);
+    CHECK(glm::distance(back.sensors[i].world_from_sensor.origin, sensors[i].world_from_sensor.origin) < 1e-9);
+    CHECK(glm::distance(back.sensors[i].world_from_sensor.forward(), sensors[i].world_from_sensor.forward()) < 1e-9);
+  }
+  CHECK(seats_at_work(back, spec, {}).noticed == report.ranked[0].at_work.noticed);
+}
+
+TEST_CASE("by seats, a scene without seats is refused where the study says so", "[placement]") {
+  SceneSpec scene = meeting_room();
+  scene.seats.clear();
+  PlacementSpec spec = by_seats(2, 4);
+  spec.by_where = {"study.yaml", 2, 5};
+  try {
+    static_cast<void>(run_placements(scene, spec));
+    FAIL("not refused");
+  } catch (const Error& error) {
+    CHECK(std::string(error.what()).find("study.yaml:2:5: error: by: seats: ") != std::string::npos);
+    CHECK(error.code() == ErrorCode::input);
+  }
 }
 
 TEST_CASE("a mounted sensor looks along its yaw, tilted down", "[placement]") {

@@ -1,0 +1,112 @@
+#include "studies/placement_page.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text.hpp"
+#include "pirsim/response.hpp"
+#include "studies/placement.hpp"
+#include "studies/room_plan.hpp"
+#include "studies/study_report.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+PlacementView view_of(const SceneSpec& scene, const PlacementSpec& spec, const std::string& title, unsigned threads) {
+  const CoverageStudy study = study_of(scene, spec.coverage, {});
+  const CoverageMap map = run_coverage(study, threads);
+  PlacementView view{map_of_all(study, map), watch_workers(study, SeatsTried::all, threads).by_any(),
+                     figures_of(map).all.seen_area_m2, scene.sensors.size()};
+  view.map.title = title;
+  view.map.ringed_as = "seat where nobody at work is noticed";
+  for (const SeatSpec& seat : scene.seats) {
+    const auto is_seat = [&](const std::vector<std::string>& ids) {
+      return std::ranges::find(ids, seat.id) != ids.end();
+    };
+    if (is_seat(view.at_work.deaf) || is_seat(view.at_work.unseen))
+      view.map.ringed.push_back(floor_point(seat.world_from_seat.origin));
+  }
+  const std::size_t n_seats =
+      view.at_work.noticed.size() + view.at_work.deaf.size() + view.at_work.unseen.size();
+  view.map.note = "somebody at work is noticed in " + std::to_string(view.at_work.noticed.size()) + " of " +
+                  std::to_string(n_seats) + " seats";
+  return view;
+}
+
+std::string named(const std::vector<std::string>& seats) { return seats.empty() ? "none" : joined(seats, " "); }
+
+io::ReportSection section_of(const std::string& heading, const PlacementView& view) {
+  io::Table table{{"seats", "number", "which"}, {}};
+  const auto row = [&](const std::string& what, const std::vector<std::string>& seats) {
+    table.rows.push_back({what, std::to_string(seats.size()), named(seats)});
+  };
+  row("blind: unseen, no sensor sees who works there", view.at_work.unseen);
+  row("blind: deaf, sensors see who works there and never report motion", view.at_work.deaf);
+  row("noticed", view.at_work.noticed);
+  return {heading,
+          {std::to_string(view.n_sensors) + " sensors, which see the target on " + fixed(view.seen_area_m2, 2) +
+           " m² of floor."},
+          {std::move(table)},
+          {view.map}};
+}
+
+io::Table ranking(const std::vector<PlacementScore>& scores) {
+  io::Table table{{"rank", "set", "area seen, m²", "blind", "overlap", "seats noticed", "deaf", "unseen"}, {}};
+  const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const PlacementScore& s = scores[i];
+    table.rows.push_back({std::to_string(i + 1), s.set.id, fixed(s.seen_area_m2, 2), percent(s.blind_fraction),
+                          percent(s.overlap), std::to_string(s.at_work.noticed.size()),
+                          std::to_string(s.at_work.deaf.size()), std::to_string(s.at_work.unseen.size())});
+  }
+  return table;
+}
+
+io::Table places_of(const std::vector<SensorSpec>& sensors) {
+  io::Table table{{"sensor", "model", "x, m", "y, m", "z, m"}, {}};
+  for (const SensorSpec& sensor : sensors) {
+    const Vec3& at = sensor.world_from_sensor.origin;
+    table.rows.push_back({sensor.id, sensor.model, fixed(at.x, 2), fixed(at.y, 2), fixed(at.z, 2)});
+  }
+  return table;
+}
+
+}  // namespace
+
+PlacementViews views_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
+                        unsigned threads) {
+  PlacementViews views;
+  if (!scene.sensors.empty()) views.before = view_of(scene, spec, "before: the scene's own sensors", threads);
+  if (!report.ranked.empty() && !report.ranked[0].set.sensors.empty())
+    views.after = view_of(report.best, spec, "after: " + report.ranked[0].set.id, threads);
+  return views;
+}
+
+io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
+                            const PlacementViews& views) {
+  io::Report page;
+  page.title = spec.coverage.name + ": where sensors go";
+  page.paragraphs = {
+      "Sets of sensors for " + scene.name + ", ranked by " +
+          (spec.by == PlacementAim::seats ? "the seats where somebody at work is noticed, then by the area that they see"
+                                          : "the area that they see") +
+          ". The sensors' response is " + responses_in_words(report.best, spec.coverage.sensing) + ".",
+      "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
+      "means blind to all. Somebody of natural style worked in each seat, alone; an orange ring is round each seat where "
+      "no sensor noticed it. " +
+          signs_of_maps(scene)};
+  io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked)}, {}};
+  if (report.search && !report.search->gained)
+    sets.paragraphs = {"The search found nothing better than even spacing."};
+  page.sections.push_back(std::move(sets));
+  if (views.before) page.sections.push_back(section_of("Before: the scene's own sensors", *views.before));
+  if (views.after) {
+    page.sections.push_back(section_of("After: the best set, " + report.ranked[0].set.id, *views.after));
+    page.sections.back().tables.push_back(places_of(report.best.sensors));
+  } else if (views.before && !report.ranked.empty()) {
+    page.finding = "No set does better than the scene's own sensors.";
+  }
+  return page;
+}
+
+}  // namespace pirsim::studies
