@@ -101,6 +101,8 @@ struct WorkNotice {
   std::size_t for_good = 0;  ///< of those, that see the person at every moment: what moves there is no change
   /// Sees the person and never reports motion.
   [[nodiscard]] bool is_deaf() const noexcept { return channels > 0 && seconds == 0; }
+  /// In a single second motion may be luck: at another quarter of an hour there may be none (10 s: `assumed`).
+  [[nodiscard]] bool is_sure() const noexcept { return seconds >= 10; }
   bool operator==(const WorkNotice&) const = default;
 };
 
@@ -109,6 +111,7 @@ struct SeatsAtWork {
   std::vector<std::string> noticed;  ///< some sensor reports motion
   std::vector<std::string> deaf;     ///< sensors see the person, and none ever reports motion
   std::vector<std::string> unseen;
+  std::vector<std::string> surely;  ///< of `noticed`: some sensor reports motion in 10 s or more
 };
 
 /// Somebody at work in one seat after the other, alone.

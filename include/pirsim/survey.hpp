@@ -73,7 +73,7 @@ struct PlacementSearchSpec {
 /// What sets are ranked by, and what a search looks for.
 enum class PlacementAim {
   area,   ///< floor where the target is noticed
-  seats,  ///< seats where somebody at work is noticed; among equals, area
+  seats,  ///< seats where somebody at work is noticed; among equals, surely noticed ones, then area
 };
 
 struct PlacementSpec {

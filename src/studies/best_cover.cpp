@@ -1,5 +1,3 @@
-// Nemhauser, G. L., Wolsey, L. A., Fisher, M. L.: An analysis of approximations for maximizing submodular set
-// functions I. Mathematical Programming 14, 265-294 (1978). https://doi.org/10.1007/BF01588971
 #include "studies/best_cover.hpp"
 
 #include <algorithm>

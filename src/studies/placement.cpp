@@ -99,8 +99,11 @@ std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorA
 
 std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, PlacementAim by) {
   std::ranges::stable_sort(scores, [by](const PlacementScore& a, const PlacementScore& b) {
-    if (by == PlacementAim::seats && a.at_work.noticed.size() != b.at_work.noticed.size())
-      return a.at_work.noticed.size() > b.at_work.noticed.size();
+    const SeatsAtWork &at_a = a.at_work, &at_b = b.at_work;
+    if (by == PlacementAim::seats) {
+      if (at_a.noticed.size() != at_b.noticed.size()) return at_a.noticed.size() > at_b.noticed.size();
+      if (at_a.surely.size() != at_b.surely.size()) return at_a.surely.size() > at_b.surely.size();
+    }
     if (a.seen_area_m2 != b.seen_area_m2) return a.seen_area_m2 > b.seen_area_m2;
     return a.blind_seats.size() < b.blind_seats.size();
   });
@@ -109,17 +112,19 @@ std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, Placement
 
 std::string to_text(const std::vector<PlacementScore>& scores, PlacementAim by) {
   std::ostringstream out;
-  out << (by == PlacementAim::seats ? "ranked by seats where somebody at work is noticed, then by seen area\n"
-                                    : "ranked by seen area\n")
+  out << (by == PlacementAim::seats
+              ? "ranked by seats where somebody at work is noticed, then surely noticed, then by seen area\n"
+              : "ranked by seen area\n")
       << "                                       seats at work\n"
-         "  rank  seen, m2  blind, %  overlap, %  noticed  deaf  unseen  set (blind seats; deaf to work in)\n"
+         "  rank  seen, m2  blind, %  overlap, %  noticed  surely  deaf  unseen  set (blind seats; deaf to work in)\n"
       << std::fixed;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
     out << std::setw(6) << i + 1 << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1)
         << std::setw(10) << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << std::setw(9)
-        << s.at_work.noticed.size() << std::setw(6) << s.at_work.deaf.size() << std::setw(8) << s.at_work.unseen.size()
-        << "  " << s.set.id << " (" << listed(s.blind_seats) << "; " << listed(s.at_work.deaf) << ")\n";
+        << s.at_work.noticed.size() << std::setw(8) << s.at_work.surely.size() << std::setw(6) << s.at_work.deaf.size()
+        << std::setw(8) << s.at_work.unseen.size() << "  " << s.set.id << " (" << listed(s.blind_seats) << "; "
+        << listed(s.at_work.deaf) << ")\n";
   }
   return out.str();
 }
@@ -133,11 +138,13 @@ std::string gain_by_area(const PlacementSearch& search) {
          " m2)";
 }
 
-/// "38 seats noticed and 41.00 m2 seen, even spacing 24 and 39.00 m2"
+/// "38 seats noticed, 30 surely, 41.00 m2 seen; with even spacing 24, 12 surely, 39.00 m2"
 std::string gain_by_seats(const PlacementSearch& search) {
-  const auto noticed = [](const PlacementScore& score) { return std::to_string(score.at_work.noticed.size()); };
-  return noticed(search.found) + " seats noticed and " + fixed(search.found.seen_area_m2, 2) +
-         " m2 seen, with even spacing " + noticed(search.even) + " and " + fixed(search.even.seen_area_m2, 2) + " m2";
+  const auto told = [](const PlacementScore& score, const std::string& noticed, const std::string& seen) {
+    return std::to_string(score.at_work.noticed.size()) + noticed + ", " + std::to_string(score.at_work.surely.size()) +
+           " surely, " + fixed(score.seen_area_m2, 2) + " m2" + seen;
+  };
+  return told(search.found, " seats noticed", " seen") + "; with even spacing " + told(search.even, "", "");
 }
 
 }  // namespace

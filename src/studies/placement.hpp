@@ -30,7 +30,8 @@ namespace pirsim::studies {
 [[nodiscard]] SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
                                         unsigned threads = 0);
 
-/// Best first. By area: fewer blind seats decide among equals. By seats: area, then fewer blind seats. Then the order
+/// Best first. By area: fewer blind seats decide among equals. By seats: those that are
+/// surely noticed, area, then fewer blind seats. Then the order
 /// given.
 [[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores,
                                                  PlacementAim by = PlacementAim::area);

@@ -26,8 +26,7 @@ PlacementView view_of(const SceneSpec& scene, const PlacementSpec& spec, const s
     if (is_seat(view.at_work.deaf) || is_seat(view.at_work.unseen))
       view.map.ringed.push_back(floor_point(seat.world_from_seat.origin));
   }
-  const std::size_t n_seats =
-      view.at_work.noticed.size() + view.at_work.deaf.size() + view.at_work.unseen.size();
+  const std::size_t n_seats = view.at_work.noticed.size() + view.at_work.deaf.size() + view.at_work.unseen.size();
   view.map.note = "somebody at work is noticed in " + std::to_string(view.at_work.noticed.size()) + " of " +
                   std::to_string(n_seats) + " seats";
   return view;
@@ -42,7 +41,8 @@ io::ReportSection section_of(const std::string& heading, const PlacementView& vi
   };
   row("blind: unseen, no sensor sees who works there", view.at_work.unseen);
   row("blind: deaf, sensors see who works there and never report motion", view.at_work.deaf);
-  row("noticed", view.at_work.noticed);
+  row("noticed, in a second at least", view.at_work.noticed);
+  row("of these, surely: in ten seconds at least", view.at_work.surely);
   return {heading,
           {std::to_string(view.n_sensors) + " sensors, which see the target on " + fixed(view.seen_area_m2, 2) +
            " m² of floor."},
@@ -51,13 +51,15 @@ io::ReportSection section_of(const std::string& heading, const PlacementView& vi
 }
 
 io::Table ranking(const std::vector<PlacementScore>& scores) {
-  io::Table table{{"rank", "set", "area seen, m²", "blind", "overlap", "seats noticed", "deaf", "unseen"}, {}};
+  io::Table table{{"rank", "set", "area seen, m²", "blind", "overlap", "seats noticed", "surely", "deaf", "unseen"},
+                  {}};
   const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
     table.rows.push_back({std::to_string(i + 1), s.set.id, fixed(s.seen_area_m2, 2), percent(s.blind_fraction),
                           percent(s.overlap), std::to_string(s.at_work.noticed.size()),
-                          std::to_string(s.at_work.deaf.size()), std::to_string(s.at_work.unseen.size())});
+                          std::to_string(s.at_work.surely.size()), std::to_string(s.at_work.deaf.size()),
+                          std::to_string(s.at_work.unseen.size())});
   }
   return table;
 }
@@ -88,16 +90,17 @@ io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, c
   page.title = spec.coverage.name + ": where sensors go";
   page.paragraphs = {
       "Sets of sensors for " + scene.name + ", ranked by " +
-          (spec.by == PlacementAim::seats ? "the seats where somebody at work is noticed, then by the area that they see"
-                                          : "the area that they see") +
+          (spec.by == PlacementAim::seats
+               ? "the seats where somebody at work is noticed, then surely noticed, then by the area that they see"
+               : "the area that they see") +
           ". The sensors' response is " + responses_in_words(report.best, spec.coverage.sensing) + ".",
       "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
-      "means blind to all. Somebody of natural style worked in each seat, alone; an orange ring is round each seat where "
+      "means blind to all. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
+      "where "
       "no sensor noticed it. " +
           signs_of_maps(scene)};
   io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked)}, {}};
-  if (report.search && !report.search->gained)
-    sets.paragraphs = {"The search found nothing better than even spacing."};
+  if (report.search && !report.search->gained) sets.paragraphs = {"The search found nothing better than even spacing."};
   page.sections.push_back(std::move(sets));
   if (views.before) page.sections.push_back(section_of("Before: the scene's own sensors", *views.before));
   if (views.after) {

@@ -68,11 +68,19 @@ void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations)
   }
 }
 
-
 std::vector<double> even_shares(int n) {
   std::vector<double> shares;
   for (int i = 0; i < n; ++i) shares.push_back((i + 0.5) / n);
   return shares;
+}
+
+/// No number of squares is worth a seat that is surely noticed, and no number of these a seat that is noticed.
+std::vector<std::uint64_t> worth(std::size_t n_seats, std::size_t n_squares) {
+  const std::uint64_t surely = n_squares + 1, noticed = (n_seats + 1) * surely;
+  std::vector<std::uint64_t> worth(n_seats, noticed);
+  worth.resize(2 * n_seats, surely);
+  worth.resize(2 * n_seats + n_squares, 1);
+  return worth;
 }
 
 /// Adds what the sensors from `first` on notice.
@@ -84,13 +92,14 @@ void add_noticed(Cover& cover, std::size_t first, const WorkReport& work, const 
     for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
       if (work.notice(seat, sensor).seconds > 0) covered.push_back(thing);
     }
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
+      if (work.notice(seat, sensor).is_sure()) covered.push_back(thing);
+    }
     for (std::size_t at = sensor; at < map.counts.size(); at += n_sensors, ++thing) {
       if (map.counts[at] > 0) covered.push_back(thing);
     }
-    const std::size_t n_squares = map.counts.size() / n_sensors;
-    cover.worth.assign(work.seats.size(), n_squares + 1);
-    cover.worth.resize(work.seats.size() + n_squares, 1);
   }
+  cover.worth = worth(work.seats.size(), map.counts.size() / n_sensors);
 }
 
 std::vector<double> found_by_seats(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
@@ -157,7 +166,8 @@ Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const Placemen
   cover.covered.resize(places.size());
   for (std::size_t first = 0; first < places.size(); first += at_once) {
     const std::size_t end = std::min(first + at_once, places.size());
-    SensorSetSpec set{"", {places.begin() + static_cast<std::ptrdiff_t>(first), places.begin() + static_cast<std::ptrdiff_t>(end)}};
+    SensorSetSpec set{
+        "", {places.begin() + static_cast<std::ptrdiff_t>(first), places.begin() + static_cast<std::ptrdiff_t>(end)}};
     const CoverageStudy study = study_of(scene, spec.coverage, set);
     add_noticed(cover, first, watch_workers(study, SeatsTried::all, threads), run_coverage(study, threads));
     for (std::size_t i = first; i < end; ++i) tried();
@@ -168,8 +178,10 @@ Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const Placemen
 PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
                                  unsigned threads, const Tried& tried) {
   switch (spec.by) {
-    case PlacementAim::area: return search_by_area(scene, spec.coverage, search, threads, tried);
-    case PlacementAim::seats: return search_by_seats(scene, spec, search, threads, tried);
+    case PlacementAim::area:
+      return search_by_area(scene, spec.coverage, search, threads, tried);
+    case PlacementAim::seats:
+      return search_by_seats(scene, spec, search, threads, tried);
   }
   throw Error(ErrorCode::internal, "unknown aim of a placement search");
 }

@@ -13,7 +13,8 @@ namespace pirsim::studies {
 using Tried = std::function<void()>;
 
 /// By area: seen area, by NLopt's DIRECT-L and then SBPLX. By seats: judges single places, evenly along the lines and
-/// those of even spacing, and covers seats, then area, with the best of them (studies/best_cover.hpp). Starts from even
+/// those of even spacing, and covers seats, then seats that are surely noticed, then area,
+/// with the best of them (studies/best_cover.hpp). Starts from even
 /// spacing. Throws as score() does. Sets at_work of neither.
 [[nodiscard]] PlacementSearch search_placement(
     const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search, unsigned threads = 0,
@@ -23,8 +24,8 @@ using Tried = std::function<void()>;
 [[nodiscard]] SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares,
                                           std::string id);
 
-/// What sensors at these shares notice, each by itself: all seats, then all squares of the floor. No number of squares
-/// is worth a seat.
+/// What sensors at these shares notice, each by itself: all seats, then the same seats if they are surely noticed, then
+/// all squares of the floor. A seat is worth more than all that comes after.
 [[nodiscard]] Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
                              const std::vector<double>& shares, unsigned threads, const Tried& tried);
 

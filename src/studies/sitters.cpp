@@ -238,6 +238,7 @@ SeatsAtWork WorkReport::by_any() const {
     const bool noticed = std::ranges::any_of(of_seat, [](const WorkNotice& notice) { return notice.seconds > 0; });
     const bool deaf = !noticed && std::ranges::any_of(of_seat, &WorkNotice::is_deaf);
     (noticed ? result.noticed : deaf ? result.deaf : result.unseen).push_back(seats[i]);
+    if (std::ranges::any_of(of_seat, &WorkNotice::is_sure)) result.surely.push_back(seats[i]);
   }
   return result;
 }

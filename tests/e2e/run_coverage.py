@@ -78,7 +78,28 @@ def main():
         sets = ["--set", "spacing_m=0.3", "--set", "search.evaluations=8"]
         ranking = call("placements", data / "studies/placements.yaml", *sets).stdout
         assert "as built" in ranking and "more than even spacing" in ranking, ranking
+        assert ranking.startswith("ranked by seen area\n"), ranking
         call("placements", data / "studies/placements.yaml", "--set", "search.model=NOPE", code=3)
+
+        by_seats = [data / "studies/placements.yaml", "--set", "by=seats", "--set", "spacing_m=0.5"]
+        better = folder / "better.gltf"
+        ranking = call("placements", *by_seats, "--set", "search.evaluations=4", "-o", better, "--report",
+                       folder / "sets.html", "--maps", folder / "sets").stdout
+        assert ranking.startswith("ranked by seats where somebody at work is noticed"), ranking
+        assert "4 places tried: " in ranking, ranking
+        noticed = [int(line.split()[4]) for line in ranking.splitlines() if re.match(r" +\d+ +\d", line)]
+        assert len(noticed) == 5 and noticed == sorted(noticed, reverse=True), ranking
+        assert "After: the best set" in (folder / "sets.html").read_text() or "No set does better" in (folder / "sets.html").read_text()
+        assert (folder / "sets/before.png").read_bytes().startswith(b"\x89PNG")
+        again = subprocess.run([pirsim, "placements", "--scene", better, "--script", by_seats[0], *map(str, by_seats[1:]),
+                                "--set", "sets=[{id: as built}]", "--set", "search.evaluations=4"],
+                               capture_output=True, text=True, check=True).stdout
+        as_built = next(line for line in again.splitlines() if "as built" in line)
+        assert int(as_built.split()[4]) == noticed[0], again  # the best set, read back, is noticed in as many seats
+        fault = call("placements", data / "studies/placements.yaml", "--set", "by=seat", code=3).stderr
+        assert "did you mean 'seats'" in fault, fault
+        fault = call("placements", *by_seats, "--set", "search.evaluations=1", code=3).stderr
+        assert "2 sensors need as many places" in fault, fault
     print("coverage, walk test and placements: as described")
 
 

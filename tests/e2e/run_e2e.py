@@ -59,7 +59,7 @@ ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows",
                "--depth": "5"}
 HOME_VALUES = {"--set": "own_kitchen=0", "--rooms": "2", "--size": "60", "--height": "2.5", "--layout": "hall",
                "--sensors-at": "doorway", "--mount": "ceiling", "--model": "EKMC1601111"}
-VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--maps": "maps", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
@@ -67,7 +67,8 @@ VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
           "--cleaning": "none", "--time-zone": "Europe/Berlin"}
-OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
+OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
+           "placements": "better.gltf"}
 
 
 def options_of(command):
