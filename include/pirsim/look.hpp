@@ -101,7 +101,8 @@ struct WorkNotice {
   std::size_t for_good = 0;  ///< of those, that see the person at every moment: what moves there is no change
   /// Sees the person and never reports motion.
   [[nodiscard]] bool is_deaf() const noexcept { return channels > 0 && seconds == 0; }
-  /// In a single second motion may be luck: at another quarter of an hour there may be none (10 s: `assumed`).
+  /// In a single second motion may be luck: at another quarter of an hour there may be none (10 s: `assumed`; 1 and 10
+  /// tried: docs/formats/coverage.md).
   [[nodiscard]] bool is_sure() const noexcept { return seconds >= 10; }
   bool operator==(const WorkNotice&) const = default;
 };
