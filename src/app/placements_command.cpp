@@ -39,7 +39,6 @@ void draw_maps(const studies::PlacementViews& views, const std::filesystem::path
     const io::Pixels picture = io::drawn(view->map);
     io::write_png(folder / name, picture.width, picture.height, picture.rgb);
   };
-  make_folder(folder);
   write("before.png", views.before);
   write("after.png", views.after);
 }
@@ -52,6 +51,7 @@ void placements(const Inputs& inputs, const PlacementsOptions& options) {
   tell(scene.warnings, inputs.verbosity);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
+  if (!options.maps.empty()) make_folder(options.maps);
   const StopRequest stop;
   const PlacementReport report = compare(scene, spec, inputs, options.threads, stop);
   tell(report.warnings, inputs.verbosity);
