@@ -111,6 +111,7 @@ enum class People { known, unknown };
 
 struct LightCosts {
   std::string id;
+  std::vector<std::string> sensors;  ///< that switch it
   std::vector<double> rule_delays_min;
   People people = People::known;
   std::int64_t days = 0;

@@ -51,7 +51,9 @@ control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue
     if (!light.sensors.empty()) {
       rule.lights.push_back(std::move(light));
     } else {
-      remarks.push_back({Severity::warning, {scene.name}, "area '" + light.id + "' has no sensor, and so no light"});
+      remarks.push_back({Severity::warning,
+                         {scene.name},
+                         "area '" + light.id + "' has no sensor that could switch a light: it is left out"});
     }
   }
   if (rule.lights.empty())

@@ -30,6 +30,7 @@ std::vector<double> delays_of(const LightSpec& light) {
 /// Where a light finds what it goes by.
 struct Columns {
   std::vector<std::size_t> sensors;
+  std::vector<std::string> names;  ///< of the sensors
   std::optional<std::size_t> area, door;
 };
 
@@ -52,6 +53,7 @@ Columns columns_for(const LightSpec& light, const ColumnOwners& owners, Diagnost
     columns.sensors.resize(owners.sensors.size());
     std::iota(columns.sensors.begin(), columns.sensors.end(), std::size_t{0});
   }
+  columns.names = light.sensors.empty() ? owners.sensors : light.sensors;
   if (!light.area.empty()) columns.area = find(owners.areas, light.area, "people of an area", light, faults);
   if (!light.door.empty()) columns.door = find(owners.doors, light.door, "door", light, faults);
   const std::size_t n = light.sensors.empty() ? owners.sensors.size() : light.sensors.size();
@@ -246,6 +248,7 @@ LightCosts Light::costs(People people) const {
   const double row_h = window_s_ / 3600.0;
   LightCosts costs;
   costs.id = spec_.id;
+  costs.sensors = columns_.names;
   costs.rule_delays_min = spec_.delays_min;
   costs.people = people;
   costs.power_w = spec_.power_w;

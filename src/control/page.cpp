@@ -28,11 +28,16 @@ double a_day(const LightCosts& light, double hours) {
 
 /// Its delays that a table tells.
 std::vector<double> told_delays(const LightCosts& light) {
-  std::vector<double> delays{0.0, 1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0};
+  std::vector<double> delays{1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0};
   delays.insert(delays.end(), light.rule_delays_min.begin(), light.rule_delays_min.end());
   std::ranges::sort(delays);
   delays.erase(std::ranges::unique(delays).begin(), delays.end());
   return delays;
+}
+
+/// A range from no event would say nothing.
+std::string offs_an_hour(const DelayCosts& at) {
+  return fixed(at.false_offs_an_hour.value, 2) + (at.false_offs > 0 ? range(at.false_offs_an_hour, 1.0, 2) : "");
 }
 
 std::string energy(const LightCosts& light, double hours) {
@@ -41,9 +46,10 @@ std::string energy(const LightCosts& light, double hours) {
 
 io::Table table_of(const LightCosts& light) {
   const bool knows = light.people == People::known;
-  io::Table table{{"delay, min", "lit, h/day", "on, 1/day"}, {}};
+  io::Table table{{"delay, min", "lit, h/day", "switched on a day"}, {}};
   if (knows) {
-    table.headings.insert(table.headings.begin() + 1, {"off on somebody, 1/h", "dark, %", "longest dark"});
+    table.headings.insert(table.headings.begin() + 1,
+                          {"off on somebody", "an occupied hour", "dark, %", "longest dark"});
     table.headings.insert(table.headings.end(), {"empty, h/day", "wait"});
   }
   if (light.power_w > 0.0) table.headings.push_back("kWh/day");
@@ -53,7 +59,7 @@ io::Table table_of(const LightCosts& light) {
                                  fixed(at.switched_on_a_day, 1)};
     if (knows) {
       row.insert(row.begin() + 1,
-                 {fixed(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
+                 {std::to_string(at.false_offs), offs_an_hour(at),
                   fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s)});
       row.insert(row.end(), {fixed(a_day(light, at.lit_empty_h), 2), time(at.mean_wait_s)});
     }
@@ -63,7 +69,7 @@ io::Table table_of(const LightCosts& light) {
   const auto add = [&](const std::string& name, double hours, double empty_h) {
     std::vector<std::string> row{name, fixed(a_day(light, hours), 2), ""};
     if (knows) {
-      row.insert(row.begin() + 1, {"0", "0", ""});
+      row.insert(row.begin() + 1, {"", "", "", ""});
       row.insert(row.end(), {fixed(a_day(light, empty_h), 2), ""});
     }
     if (light.power_w > 0.0) row.push_back(energy(light, hours));
@@ -71,7 +77,7 @@ io::Table table_of(const LightCosts& light) {
   };
   add("always on", light.hours, light.hours - light.occupied_h);
   if (knows) {
-    add("by hand", light.span_h, light.span_h - light.occupied_h);
+    add("first in, last out", light.span_h, light.span_h - light.occupied_h);
     add("ideal", light.occupied_h, 0.0);
   }
   return table;
@@ -79,10 +85,10 @@ io::Table table_of(const LightCosts& light) {
 
 using Line = io::LineChart::Line;
 
-/// Without a delay nearly every second is dark, which would hide the rest.
+/// Short delays leave people in the dark so often that the rest would be hidden.
 template <typename Value>
 Line curve(const LightCosts& light, const std::string& name, Value value) {
-  constexpr double shortest_min = 1.0, longest_min = 60.0;
+  constexpr double shortest_min = 3.0, longest_min = 60.0;
   Line line{name, {}};
   for (const DelayCosts& at : light.by_delay) {
     if (at.delay_min >= shortest_min && at.delay_min <= longest_min) line.points.push_back(value(at));
@@ -91,7 +97,7 @@ Line curve(const LightCosts& light, const std::string& name, Value value) {
   return line;
 }
 
-io::LineChart chart(const LightCosts& light, std::string title, std::string y_label, std::vector<Line> lines) {
+io::LineChart chart(std::string title, std::string y_label, std::vector<Line> lines) {
   io::LineChart chart;
   chart.title = std::move(title);
   chart.x_label = "delay, min";
@@ -103,7 +109,7 @@ io::LineChart chart(const LightCosts& light, std::string title, std::string y_la
   }
   chart.y_high = most > 0.0 ? 1.05 * most : 1.0;
   chart.lines = std::move(lines);
-  chart.note = light.days >= 3 ? "Ranges: the middle 90 % of what days drawn with replacement give." : "";
+  chart.note = "From 3 min on.";
   return chart;
 }
 
@@ -116,7 +122,7 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
   };
   if (light.people == People::known) {
     charts.emplace_back(
-        chart(light, "What people pay", "times it goes off on somebody, an occupied hour",
+        chart("How often it goes off on somebody", "times an occupied hour",
               {curve(light, light.id, [&](const DelayCosts& at) { return of(at, at.false_offs_an_hour, 1.0); })}));
   }
   const auto flat = [&](const std::string& name, double hours) {
@@ -131,10 +137,10 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
     lines.push_back(curve(light, "lit and empty", [&](const DelayCosts& at) {
       return io::LineChart::Point{at.delay_min, a_day(light, at.lit_empty_h), {}, {}};
     }));
-    lines.push_back(flat("by hand", light.span_h));
+    lines.push_back(flat("first in, last out", light.span_h));
     lines.push_back(flat("ideal", light.occupied_h));
   }
-  charts.emplace_back(chart(light, "What the delay costs in light", "hours a day", std::move(lines)));
+  charts.emplace_back(chart("What the delay costs in light", "hours a day", std::move(lines)));
   return charts;
 }
 
@@ -159,16 +165,20 @@ std::string command(const DarkSpell& spell, const std::string& view) {
 io::ReportSection worst_section(const LightCosts& light, const std::string& view) {
   io::ReportSection section;
   section.heading = light.id + ": the longest times in the dark";
-  section.paragraphs = {"With a delay of " + minutes(light.rule_delays_min.front()) + "."};
-  io::Table table{{"run", "from", "for", "what happened", "look at it"}, {}};
+  section.paragraphs = {"With a delay of " + minutes(light.rule_delays_min.front()) +
+                        ". A command shows five minutes of each; --to shows more."};
+  io::Table table{{"replicate", "from", "for", "what happened", "look at it"}, {}};
+  constexpr double shortest_s = 10.0;  // less is the time that sensors take to answer
   for (const DarkSpell& spell : light.worst) {
+    if (spell.length_s < shortest_s) continue;
     table.rows.push_back(
         {std::to_string(spell.replicate) + (spell.trial.empty() ? "" : ", trial " + spell.trial),
          spell.clock.empty() ? fixed(spell.from_s, 0) + " s" : spell.clock, time(spell.length_s),
          spell.cause == DarkSpell::Cause::went_off ? "it went off on somebody" : "somebody came, and it stayed off",
          command(spell, view)});
   }
-  section.tables.push_back(std::move(table));
+  if (table.rows.empty()) section.paragraphs = {"Nobody was in the dark for 10 s."};
+  if (!table.rows.empty()) section.tables.push_back(std::move(table));
   return section;
 }
 
@@ -204,6 +214,14 @@ std::string with_which_delay(const Costs& costs) {
   return all_alike ? "With a delay of " + minutes(first) : "With the rule's delays";
 }
 
+std::string worst_light(const Costs& costs) {
+  const auto rate = [](const LightCosts& light) {
+    return light.at(light.rule_delays_min.front()).false_offs_an_hour.value;
+  };
+  const LightCosts& worst = *std::ranges::max_element(costs.lights, {}, rate);
+  return rate(worst) > 0.0 ? " The worst is " + worst.id + ", " + fixed(rate(worst), 2) + " times." : "";
+}
+
 std::string finding_of(const Costs& costs) {
   Sums sums;
   for (const LightCosts& light : costs.lights) sums.add(light);
@@ -222,14 +240,15 @@ std::string finding_of(const Costs& costs) {
     text += ", a light goes off on somebody " + fixed(sums.offs_an_hour(), 2) +
             " times in every hour that its area is occupied";
   }
-  return text + ". People are in the dark for " + share(sums.dark_share()) + " of that time. Of " + lit_h +
-         (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.a_day(sums.lit_empty_h), 2) +
-         " are lit for nobody.";
+  text += ". Somebody is in the dark for " + share(sums.dark_share()) + " of that time. Of " + lit_h +
+          (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.a_day(sums.lit_empty_h), 2) +
+          " are lit for nobody.";
+  return is_one ? text : text + worst_light(costs);
 }
 
 /// A row a light, and one of all.
 io::Table overview(const Costs& costs) {
-  io::Table table{{"light", "delay", "off on somebody, 1/h", "dark, %", "lit, h/day", "empty, h/day"}, {}};
+  io::Table table{{"light", "delay", "off on somebody, an occupied hour", "dark, %", "lit, h/day", "empty, h/day"}, {}};
   const auto add = [&](const std::string& name, const std::string& delay, const Sums& sums) {
     table.rows.push_back({name, delay, fixed(sums.offs_an_hour(), 2), fixed(100.0 * sums.dark_share(), 1),
                           fixed(sums.a_day(sums.lit_h), 2), fixed(sums.a_day(sums.lit_empty_h), 2)});
@@ -316,12 +335,14 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
   if (know_people(costs)) {
     report.paragraphs.emplace_back(
-        "In the tables, 1/h: how often it goes off on somebody, an occupied hour. Dark: share of occupied time. Empty: "
-        "lit "
-        "while nobody is there. Wait: from coming in to light, on average. By hand: lit from the day's first person to "
-        "its "
-        "last. Ideal: lit while somebody is there. In parentheses: the middle 90 % of what days drawn with replacement "
-        "give.");
+        "In the tables: off on somebody, how often it went off while somebody was in its area, and the same an "
+        "occupied "
+        "hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five days doesn't "
+        "mean never. Dark: share of occupied time. Empty: lit while nobody is there. Wait: from coming into an empty "
+        "area "
+        "to light, on average; how long the delay is hardly matters for it. First in, last out: lit from the day's "
+        "first "
+        "person to its last. Ideal: lit while somebody is there; less than that is dark time, and no saving.");
   }
   for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
   if (costs.lights.size() > 1 && know_people(costs))
@@ -330,7 +351,8 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
     io::ReportSection section;
     section.heading = light.id;
     section.paragraphs = {
-        counted(static_cast<std::size_t>(light.days), "day") + ", " + fixed(light.hours, 1) + " hours" +
+        "Switched by " + joined(light.sensors, ", ") + ". " + counted(static_cast<std::size_t>(light.days), "day") +
+        ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
     section.tables.push_back(table_of(light));
@@ -341,7 +363,8 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   io::ReportSection lit;
   lit.heading = "The lit time, day by day";
   lit.paragraphs = {
-      "The first days, each light by its first delay. The darker the line, the more of two minutes is lit."};
+      "The first days, each light by the delay that is told of above. The darker a line, the more of two minutes is "
+      "lit."};
   lit.charts.emplace_back(days.chart());
   report.sections.push_back(std::move(lit));
   for (const LightCosts& light : costs.lights) {

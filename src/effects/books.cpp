@@ -199,7 +199,7 @@ void alter_people_miscounted(StudyInForce& study, const EffectSpec& effect) {
   for (TrialInForce& trial : study.trials) {
     if (!trial.occupancy || trial.occupancy->counts.times_s.empty()) continue;
     miscount(trial.occupancy->counts, moment_of(trial, begin), moment_of(trial, begin + share),
-             word(effect, "there_was") == "one_fewer" ? -1 : 1);
+             word(effect, "there_was") == "one_fewer_than_told" ? -1 : 1);
     add_occupants(study, trial);
   }
 }
@@ -226,7 +226,10 @@ Effect people_miscounted() {
                                   told_as("begin (0 early, 1 late)",
                                           detail("begin", "", 0.5, 0.0, 1.0, 0.0, 1.0,
                                                  "any: 0 at the beginning, 1 as late as it can be"))},
-                   .choices = {{"there_was", ChoiceKind::variant, {"one_more", "one_fewer"}, "one_more"}},
+                   .choices = {{"there_was",
+                                ChoiceKind::variant,
+                                {"one_more_than_told", "one_fewer_than_told"},
+                                "one_more_than_told"}},
                    .reach = Reach::geometry,
                    .needs = Needs::counts,
                    .idle_in = {Survey::coverage, Survey::walk_test}},

@@ -31,12 +31,6 @@ bool find_name(std::span<const HypothesisScore> scores, std::vector<std::size_t>
   return true;
 }
 
-bool is_about_counts(const std::string& hypothesis) {
-  const auto& all = effects::catalogue();
-  const auto effect = std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == hypothesis; });
-  return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
-}
-
 /// Whether wrong counts of people can have made the data, while something else is to be named: who was there comes
 /// first, since a sensor is easily blamed for somebody who came unnoticed.
 bool may_be_miscounted(std::span<const HypothesisScore> scores, const std::vector<std::size_t>& kept) {
@@ -45,6 +39,12 @@ bool may_be_miscounted(std::span<const HypothesisScore> scores, const std::vecto
 }
 
 }  // namespace
+
+bool is_about_counts(const std::string& hypothesis) {
+  const auto& all = effects::catalogue();
+  const auto effect = std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == hypothesis; });
+  return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
+}
 
 Decision decide(double null_p, std::span<const HypothesisScore> scores, const DecisionLevels& levels) {
   if (null_p > levels.alpha) return {};

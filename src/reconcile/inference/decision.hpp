@@ -55,6 +55,10 @@ struct Decision {
 /// An effect that was dropped is told as the nearest: as probable as a name among several, and the model with it
 /// passes.
 [[nodiscard]] bool comes_nearest(const HypothesisScore& dropped, const Look& applied);
+
+/// Does the effect change how many people were there?
+[[nodiscard]] bool is_about_counts(const std::string& hypothesis);
+
 /// Somebody may have been there whom the counts don't tell of: nothing else is applied before that is ruled out.
 [[nodiscard]] bool counts_in_doubt(std::span<const Candidate> candidates, double alpha);
 

@@ -53,9 +53,9 @@ Names first_ones(const Names& names) {
 std::string no_effect(const Outcome& outcome) {
   for (const Candidate& candidate : outcome.candidates) {
     if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
-      return " It looks most like " + candidate.score.hypothesis +
-             ", but causes that only look like it make such data " +
-             "more often than it does itself (p = " + short_number(likeness->p_own) + ").";
+      return " It looks most like " + candidate.score.hypothesis + ", but " + candidate.score.hypothesis +
+             " itself seldom makes such data (p = " + short_number(likeness->p_own) +
+             "): more probably another cause imitates it.";
   }
   Names possible;
   double together = 0.0;
@@ -118,23 +118,25 @@ std::string counts_first(const Outcome& outcome) {
 }
 
 std::string sentence_of_set(const Outcome& outcome) {
-  const std::string places = where(outcome), differ = "Measurement and simulation differ so little that ";
-  if (outcome.named.empty()) return differ + "no cause can be named." + places;
+  const std::string places = where(outcome);
+  if (outcome.named.empty()) return "Measurement and simulation differ, but by too little to name a cause." + places;
   Names causes = first_ones(outcome.named);
   const bool one = outcome.named.size() == 1;
   if (outcome.nothing.p > outcome.alpha) {
     causes.push_back(something_else(outcome));
-    return differ + "it may be chance." + places + " If it isn't chance, the cause is " + enumerated(causes, "or") +
-           "." + kind_of(outcome);
+    return "Taken as a whole, what measurement and simulation differ by may be chance." + places +
+           " If it isn't, the cause is " + enumerated(causes, "or") + "." + kind_of(outcome);
   }
   const std::string first = counts_first(outcome) + "The measurement ";
   if (is_unsupported(outcome))
     return first + "shows something that the simulation doesn't include, quite possibly " + something_else(outcome) +
            "." + places + " " + enumerated(causes, "and") + " can't be ruled out, but " +
-           (one ? "it" : "the likeliest of them") + " improves nothing on trials not used for fitting.";
+           "on trials not used for fitting no improvement by " + (one ? "it" : "the likeliest of them") +
+           " could be demonstrated.";
   if (one)
-    return first + "may show " + causes.front() + ", but so weakly that it may as well be absent. Or it shows " +
-           something_else(outcome) + "." + places;
+    return first + "shows something that the simulation doesn't include. It may be " + causes.front() +
+           ", but the data don't tell whether that effect is there at all. Or it is " + something_else(outcome) + "." +
+           places;
   causes.push_back(something_else(outcome));
   return first + "shows one of these, and the data can't tell which: " + enumerated(causes, "or") + "." + places +
          kind_of(outcome);
@@ -221,41 +223,59 @@ std::string ranges_looked_for(const Outcome& outcome) {
 std::string step_of_nearest(const Outcome& outcome) {
   const std::string& effect = outcome.named.front();
   return "What to do next: look for " + effect +
-         (is_of_data(outcome.fits.front()) ? " in the data" : " at the real thing") +
+         (is_of_data(outcome.fits.front()) ? " in the data" : " in the real room") +
          " before anything is changed. pirsim effects " + effect +
          " tells what it does, and script_patched.yaml has it applied. If it isn't that, look at the data, then at the "
          "model of the room.";
 }
 
-std::string step_of_applied(const Outcome& outcome) {
-  return std::string("What to do next: run script_patched.yaml, the same script with what was found applied") +
-         (outcome.verification ? ", and see below whether it comes closer to trials not used for fitting." : ".");
+/// Faults of the data are mended in the data.
+std::string step_of_several(const Outcome& outcome) {
+  Names of_data, others;
+  for (const std::string& effect : outcome.named)
+    (effects::find(effect).info.as_if.empty() ? others : of_data).push_back(effect);
+  if (of_data.empty())
+    return "What to do next: look for " + enumerated(others, "and") +
+           " in the real room. If they are there, simulate with script_patched.yaml, the same script with all of it "
+           "applied.";
+  return "What to do next: see whether the data have " + enumerated(of_data, "and") +
+         "; if so, mend them and analyse again" +
+         (others.empty() ? "." : ". Then see whether " + enumerated(others, "and") + " is still found.");
 }
 
 std::string step_of_named(const Outcome& outcome) {
   if (is_of_data(outcome.fits.back()))
-    return "What to do next: see whether that is so. If it is, mend the data and analyse them again. "
-           "script_patched.yaml simulates the fault as it was found.";
+    return "What to do next: see whether that is so, in the files and the wiring that the data come from. If it is, "
+           "mend "
+           "the data and analyse them again. script_patched.yaml simulates the fault as it was found, and is no model "
+           "of "
+           "your room.";
   if (outcome.verification && !outcome.verification->shrunk) return step_of_nearest(outcome);
-  return step_of_applied(outcome) + " pirsim effects " + outcome.named.front() + " tells what the effect does.";
+  const std::string& effect = outcome.named.front();
+  return "What to do next: look for " + effect + " in the real room; pirsim effects " + effect +
+         " tells what it does. If it is there, simulate with script_patched.yaml, the same script with it applied.";
 }
 
 std::string step_of_set(const Outcome& outcome) {
-  if (outcome.named.size() < 2)
-    return "What to do next: measure more before anything is applied; pirsim reconcile plan finds what would tell "
-           "most.";
   constexpr std::size_t most_told = 3;
+  const bool counts = counts_in_doubt(outcome.candidates, outcome.alpha);
+  Names rest = outcome.named;  // if the counts are right
+  if (counts) std::erase_if(rest, is_about_counts);
+  std::string step = std::string("What to do next: ") +
+                     (counts ? "check the people counts, mend them, and analyse again. If they are right, " : "");
+  if (is_unsupported(outcome))
+    step +=
+        "look at the data first, then at the model of the room: columns, labels, clock, seats, sensors, furniture. "
+        "Then ";
+  if (rest.size() < 2)
+    return step + "measure more before anything is applied; pirsim reconcile plan finds what would tell most.";
   std::vector<std::string> texts;
-  for (const std::string& effect : outcome.named) {
+  for (const std::string& effect : rest) {
     if (texts.size() < most_told) texts.push_back(effect + ": " + effects::find(effect).info.fingerprint);
   }
-  const bool counts = counts_in_doubt(outcome.candidates, outcome.alpha);
-  return std::string("What to do next: ") +
-         (counts ? "check the people counts, mend them, and analyse again. If they are right, " : "") +
-         "measure more before one of them is applied. pirsim reconcile plan --effects " + joined(outcome.named, ",") +
+  return step + "measure more before one of them is applied. pirsim reconcile plan --effects " + joined(rest, ",") +
          " finds the measurement that separates them best. What " +
-         (outcome.named.size() > most_told ? "the likeliest do" : "each does") +
-         " to the data: " + joined(texts, ". ") + ".";
+         (rest.size() > most_told ? "the likeliest do" : "each does") + " to the data: " + joined(texts, ". ") + ".";
 }
 
 }  // namespace
@@ -283,7 +303,7 @@ std::string next_step(const Outcome& outcome) {
     case Verdict::named:
       return step_of_named(outcome);
     case Verdict::several:
-      return step_of_applied(outcome);
+      return step_of_several(outcome);
     case Verdict::nearest:
       return step_of_nearest(outcome);
     case Verdict::one_of:

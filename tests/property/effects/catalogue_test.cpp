@@ -228,7 +228,8 @@ TEST_CASE("faults of the data say what the data look like, and parameters have w
   CHECK(phrase("warm_object", 4) == "speed");
   CHECK(phrase("clock_lag", 1) == "drift");
   CHECK(phrase("arm_motion", 0) == "amplitude scale");
-  CHECK(effects::phrase_of({"there_was", effects::ChoiceKind::variant, {}, {}}, "one_more") == "there was one more");
+  CHECK(effects::phrase_of({"there_was", effects::ChoiceKind::variant, {}, {}}, "one_more_than_told") ==
+        "there was one more than told");
   CHECK(effects::phrase_of({"sensor", effects::ChoiceKind::sensor, {}, {}}, "PIR_1") == "sensor PIR_1");
 }
 

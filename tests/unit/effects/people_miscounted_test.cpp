@@ -37,7 +37,7 @@ TEST_CASE("One person more, or fewer, for a part of the time", "[effects]") {
   const CountsSpec given = *counted().trials.front().occupancy->counts;
   for (const int by : {1, -1}) {
     // A third of 6000 s, half of what is left before it: from 2000 to 4000 s.
-    const StudyInForce study = miscounted(1.0 / 3.0, 0.5, by > 0 ? "one_more" : "one_fewer");
+    const StudyInForce study = miscounted(1.0 / 3.0, 0.5, by > 0 ? "one_more_than_told" : "one_fewer_than_told");
     const CountsSpec& counts = study.trials.front().occupancy->counts;
     for (double at_s = 5.0; at_s < 6000.0; at_s += 10.0) {
       const bool within = at_s >= 2000.0 && at_s < 4000.0;
@@ -46,7 +46,7 @@ TEST_CASE("One person more, or fewer, for a part of the time", "[effects]") {
     }
     CHECK(study.trials.front().people.size() == (by > 0 ? 3 : 2));
   }
-  const StudyInForce none = miscounted(0.0, 0.5, "one_more");
+  const StudyInForce none = miscounted(0.0, 0.5, "one_more_than_told");
   CHECK(none.trials.front().occupancy->counts.people == given.people);
 }
 

@@ -89,8 +89,8 @@ TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_scatter", 0.9}});
   outcome.candidates.front().kept = false;
   outcome.candidates.front().reason = reason::LikeImpostors{0.02};
-  CHECK_THAT(sentence(outcome), contains("It looks most like seat_scatter, but causes that only look like it make "
-                                         "such data more often than it does itself (p = 0.02)."));
+  CHECK_THAT(sentence(outcome), contains("It looks most like seat_scatter, but seat_scatter itself seldom makes "
+                                         "such data (p = 0.02): more probably another cause imitates it."));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: other things that are taken for it"));
 }
 
@@ -132,10 +132,10 @@ TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
              contains("The measurement shows one of these, and the data can't tell which: seat_shift, body_size or "
                       "something that isn't in the catalogue."));
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}),
-             contains("may show seat_shift, but so weakly that it may as well be absent."));
+             contains("It may be seat_shift, but the data don't tell whether that effect is there at all."));
   Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
   weak.nothing.p = 0.2;
-  CHECK_THAT(sentence(weak), contains("so little that it may be chance"));
+  CHECK_THAT(sentence(weak), contains("what measurement and simulation differ by may be chance"));
 }
 
 TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
@@ -246,7 +246,7 @@ TEST_CASE("what comes nearest is told with its doubt, and applied", "[reconcile]
                       "roughly: simulations with it rarely look quite like your data. So the true cause may not be in "
                       "the catalogue. "));
   CHECK_THAT(sentence(outcome), !contains("0.98"));
-  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching at the real thing"));
+  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching in the real room"));
 }
 
 TEST_CASE("a fault of the data is told as one, by a name and as the nearest", "[reconcile]") {
@@ -280,17 +280,35 @@ TEST_CASE("a strength is told in the reader's words, and no probability beside i
 
 TEST_CASE("a name that improves nothing on held-out trials is to be looked for first", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::named, {{"pulse_stretching", 0.98}});
-  CHECK_THAT(next_step(outcome), contains("run script_patched.yaml") && !contains("see below"));
+  CHECK_THAT(next_step(outcome), contains("If it is there, simulate with script_patched.yaml"));
   outcome.verification.emplace();
-  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching at the real thing before anything is changed"));
+  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching in the real room before anything is changed"));
   outcome.verification->shrunk = true;
-  CHECK_THAT(next_step(outcome), contains("run script_patched.yaml") && contains("see below"));
+  CHECK_THAT(next_step(outcome), contains("If it is there, simulate with script_patched.yaml"));
+}
+
+TEST_CASE("of several causes those of the data are mended in the data", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::several, {{"missed_triggers", 0.9}, {"labels_swapped", 0.8}});
+  CHECK_THAT(next_step(outcome),
+             contains("see whether the data have labels_swapped; if so, mend them and analyse again. "
+                      "Then see whether missed_triggers is still found."));
+  CHECK_THAT(next_step(outcome_of(Verdict::several, {{"missed_triggers", 0.9}, {"dead_time", 0.8}})),
+             contains("look for missed_triggers and dead_time in the real room"));
+}
+
+TEST_CASE("what may be none of a set is looked for in data and model first", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}});
+  CHECK_THAT(next_step(outcome), contains("What to do next: measure more before one of them is applied."));
+  outcome.verification.emplace();
+  outcome.verification->names = {"dead_time", "seat_scatter"};
+  CHECK_THAT(next_step(outcome), contains("look at the data first, then at the model of the room"));
 }
 
 TEST_CASE("as long as people may be miscounted the counts come first", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::one_of, {{"missed_triggers", 0.9}, {"people_miscounted", 0.05}});
   CHECK_THAT(sentence(outcome), contains("Check the people counts first: "));
-  CHECK_THAT(next_step(outcome), contains("check the people counts, mend them, and analyse again"));
+  CHECK_THAT(next_step(outcome), contains("check the people counts, mend them, and analyse again. If they are right, "
+                                          "measure more before anything is applied; pirsim reconcile plan finds"));
   outcome.candidates.back().score.p = 0.01;
   CHECK_THAT(sentence(outcome), !contains("counts"));
 }
