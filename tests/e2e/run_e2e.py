@@ -53,7 +53,7 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
-          ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("nowhere.csv",),
+          ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("--log", "nowhere.csv"),
           ("room",): ("-o", "room.gltf"), ("home",): ("-o", "flat.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
@@ -66,7 +66,7 @@ VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
-          "--cleaning": "none", "--time-zone": "Europe/Berlin"}
+          "--cleaning": "none", "--time-zone": "Europe/Berlin", "--light": "lit.csv", "--schedule": "light.csv"}
 OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
            "placements": "better.gltf"}
 
