@@ -4,10 +4,17 @@
 
 namespace pirsim::control {
 
+namespace {
+
+constexpr double settle_s = 10.0;  // assumed (0-30 s)
+
+}  // namespace
+
 SwitchRule::SwitchRule(const LightSpec& light, double window_s)
     : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)),
       timer(light.timer),
       has_door(!light.door.empty()) {
+  settle_rows = std::llround(settle_s / window_s);
   if (!light.manual) return;
   switch_rows = std::llround(light.manual->switch_s / window_s);
   grace_rows = std::llround(light.manual->grace_s / window_s);
@@ -30,7 +37,9 @@ void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t d
   ++row_;
   if (rule.has_door) {
     if (cue.is_open && latched_) counted_from_ = row_;
-    latched_ = !cue.is_open && (latched_ || cue.moved);
+    if (cue.is_open) open_at_ = row_;
+    const bool somebody_is_in = cue.moved && row_ - open_at_ > rule.settle_rows;
+    latched_ = !cue.is_open && (latched_ || somebody_is_in);
   }
   if (!lit_) {
     if (goes_on(rule, cue)) go_on();

@@ -20,6 +20,7 @@ struct SwitchRule {
 
   std::optional<std::int64_t> switch_rows{};  ///< none: motion switches it on
   std::int64_t grace_rows = 0, least_on_rows = 0;
+  std::int64_t settle_rows = 0;  ///< after its door was shut, motion may still be of who went out
   Timer timer = Timer::restarts;
   bool has_door = false;
 };
@@ -38,6 +39,7 @@ class LightSwitch {
   bool lit_ = false;
   bool latched_ = false;  ///< by motion behind a shut door
   std::int64_t row_ = 0;
+  std::int64_t open_at_ = 0;       ///< the last row in which its door was open
   std::int64_t since_ = 0;         ///< lit since this row, or dark
   std::int64_t counted_from_ = 0;  ///< of the delay
   std::int64_t waits_ = 0;         ///< rows in which somebody was in the dark without having used the switch

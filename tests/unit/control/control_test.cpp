@@ -88,6 +88,24 @@ TEST_CASE("light by hand: timers that run out, least times, doors, switches and 
   latch.door = "door";
   CHECK(lit(latch, 1.0, "0110000000", "1111111111", "0000000100") == "0111111110");
   CHECK(lit(latch, 1.0, "0110000000", "1111111111", "1111111111") == "0111000000");  // never shut
+  // Who shuts the door behind them is out; who moves half a minute later is in.
+  Control box(rule_with(latch, {0.5}), one_sensor, 1.0);
+  const auto lit_at = [&](int from, int to, std::uint8_t bit, std::uint8_t door) {
+    bool is_lit = false;
+    for (int i = from; i < to; ++i) {
+      Sample row = row_of(i, bit, 0, 1.0);
+      row.doors = {door};
+      is_lit = box.add(row).lit[0] == 1;
+    }
+    return is_lit;
+  };
+  CHECK(lit_at(0, 5, 1, 1));
+  CHECK(lit_at(5, 10, 1, 0));
+  CHECK_FALSE(lit_at(10, 100, 0, 0));
+  CHECK(lit_at(100, 101, 1, 0));
+  CHECK(lit_at(101, 1000, 0, 0));
+  CHECK(lit_at(1000, 1001, 0, 1));
+  CHECK_FALSE(lit_at(1001, 1100, 0, 0));
   manual.manual = ManualSpec{120.0, 120.0};
   CHECK(lit(manual, 1.0, "1110000000", "0000000000") == "0000000000");  // motion alone switches nothing on
   CHECK(lit(manual, 2.0, "0000000000", "0111100000") == "0001110000");  // the switch after two minutes
