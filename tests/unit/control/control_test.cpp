@@ -203,6 +203,39 @@ TEST_CASE("several sensors, areas, unknown readings and new runs") {
   CHECK(by_area.finish().lights[0].at(1.0).lit_empty_h == Approx(1.0 / 60.0));
 }
 
+TEST_CASE("hours of darkness are counted alone, midnight belongs to the day before, and waits are from coming in") {
+  LightSpec evening;
+  evening.from_h = 22.0;
+  Control control(rule_with(evening, {1.0}), one_sensor, minute_s);
+  // 20:00 to midnight; somebody comes at 23:00 into the dark and is noticed three minutes later, motion at 21:00 is by
+  // day.
+  for (int i = 0; i < 240; ++i) {
+    Sample row = row_of(i, i == 60 || i == 183, i >= 180 ? 1 : 0);
+    const int end_min = 20 * 60 + i + 1;
+    const auto two = [](int n) { return (n < 10 ? "0" : "") + std::to_string(n); };
+    row.clock =
+        end_min == 1440 ? "2026-03-03T00:00:00" : "2026-03-02T" + two(end_min / 60) + ":" + two(end_min % 60) + ":00";
+    CHECK(control.add(row).lit[0] == (i == 183 || i == 184 ? 1 : 0));
+  }
+  const Costs costs = control.finish();
+  CHECK(costs.remarks.empty());
+  const LightCosts& light = costs.lights.front();
+  CHECK(light.hours == Approx(2.0));
+  CHECK(light.occupied_h == Approx(1.0));
+  const DelayCosts& at = light.at(1.0);
+  CHECK(at.dark_h == Approx(58.0 / 60.0));
+  CHECK(at.mean_wait_s == 180.0);
+  CHECK(at.longest_wait_s == 180.0);
+  REQUIRE(light.worst.size() == 2);
+  CHECK(light.worst[0].cause == DarkSpell::Cause::went_off);
+  CHECK(light.worst[0].length_s == 55.0 * minute_s);
+  CHECK(light.worst[1].cause == DarkSpell::Cause::stayed_off);
+  CHECK(light.worst[1].length_s == 180.0);
+  Control no_clock(rule_with(evening, {1.0}), one_sensor, minute_s);
+  no_clock.add(row_of(0, 1, 1));
+  CHECK_THAT(no_clock.finish().remarks.at(0).message, contains("the rows have no clock"));
+}
+
 TEST_CASE("rules are read with their places, and what can't be is refused") {
   const RuleSpec rule = parsed(
       "  - {area: office, sensors: [A, B], together: {sensors: 2}, delay_min: [5, 15], manual: {grace_s: 30},\n"
