@@ -53,7 +53,7 @@ control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue
     } else {
       remarks.push_back({Severity::warning,
                          {scene.name},
-                         "area '" + light.id + "' has no sensor that could switch a light: it is left out"});
+                         "the area '" + light.id + "' has no sensor that could switch a light: it is left out"});
     }
   }
   if (rule.lights.empty())

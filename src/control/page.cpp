@@ -44,41 +44,45 @@ std::string energy(const LightCosts& light, double hours) {
   return light.power_w > 0.0 ? fixed(a_day(light, hours) * light.power_w / 1000.0, 2) : "";
 }
 
-io::Table table_of(const LightCosts& light) {
+/// One line of a light's table; what isn't known, or means nothing there, is no text.
+struct TableRow {
+  std::string delay, offs, offs_an_hour, dark, longest_dark, lit, empty, switched_on, wait, energy;
+};
+
+void add(io::Table& table, const LightCosts& light, const TableRow& row) {
   const bool knows = light.people == People::known;
-  io::Table table{{"delay, min", "lit, h/day", "switched on a day"}, {}};
-  if (knows) {
-    table.headings.insert(table.headings.begin() + 1,
-                          {"off on somebody", "an occupied hour", "dark, %", "longest dark"});
-    table.headings.insert(table.headings.end(), {"empty, h/day", "wait"});
-  }
-  if (light.power_w > 0.0) table.headings.push_back("kWh/day");
+  std::vector<std::string> texts{row.delay};
+  if (knows) texts.insert(texts.end(), {row.offs, row.offs_an_hour, row.dark, row.longest_dark});
+  texts.push_back(row.lit);
+  if (knows) texts.push_back(row.empty);
+  if (light.power_w > 0.0) texts.push_back(row.energy);
+  texts.push_back(row.switched_on);
+  if (knows) texts.push_back(row.wait);
+  (table.headings.empty() ? table.headings : table.rows.emplace_back()) = std::move(texts);
+}
+
+io::Table table_of(const LightCosts& light) {
+  io::Table table;
+  add(table, light,
+      {"delay, min", "off on somebody", "an occupied hour", "dark, %", "longest", "lit, h/day", "empty, h/day",
+       "switched on", "wait", "kWh/day"});
   for (const double delay : told_delays(light)) {
     const DelayCosts& at = light.at(delay);
-    std::vector<std::string> row{shortest_number(delay), fixed(a_day(light, at.lit_h), 2),
-                                 fixed(at.switched_on_a_day, 1)};
-    if (knows) {
-      row.insert(row.begin() + 1,
-                 {std::to_string(at.false_offs), offs_an_hour(at),
-                  fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s)});
-      row.insert(row.end(), {fixed(a_day(light, at.lit_empty_h), 2), time(at.mean_wait_s)});
-    }
-    if (light.power_w > 0.0) row.push_back(energy(light, at.lit_h));
-    table.rows.push_back(std::move(row));
+    add(table, light,
+        {shortest_number(delay), std::to_string(at.false_offs), offs_an_hour(at),
+         fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s),
+         fixed(a_day(light, at.lit_h), 2), fixed(a_day(light, at.lit_empty_h), 2), fixed(at.switched_on_a_day, 1),
+         time(at.mean_wait_s), energy(light, at.lit_h)});
   }
-  const auto add = [&](const std::string& name, double hours, double empty_h) {
-    std::vector<std::string> row{name, fixed(a_day(light, hours), 2), ""};
-    if (knows) {
-      row.insert(row.begin() + 1, {"", "", "", ""});
-      row.insert(row.end(), {fixed(a_day(light, empty_h), 2), ""});
-    }
-    if (light.power_w > 0.0) row.push_back(energy(light, hours));
-    table.rows.push_back(std::move(row));
+  const auto compare = [&](const std::string& name, double hours) {
+    add(table, light,
+        {name, "", "", "", "", fixed(a_day(light, hours), 2), fixed(a_day(light, hours - light.occupied_h), 2), "", "",
+         energy(light, hours)});
   };
-  add("always on", light.hours, light.hours - light.occupied_h);
-  if (knows) {
-    add("first in, last out", light.span_h, light.span_h - light.occupied_h);
-    add("ideal", light.occupied_h, 0.0);
+  compare("always on", light.hours);
+  if (light.people == People::known) {
+    compare("first in, last out", light.span_h);
+    compare("ideal", light.occupied_h);
   }
   return table;
 }
@@ -338,11 +342,10 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         "In the tables: off on somebody, how often it went off while somebody was in its area, and the same an "
         "occupied "
         "hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five days doesn't "
-        "mean never. Dark: share of occupied time. Empty: lit while nobody is there. Wait: from coming into an empty "
-        "area "
-        "to light, on average; how long the delay is hardly matters for it. First in, last out: lit from the day's "
-        "first "
-        "person to its last. Ideal: lit while somebody is there; less than that is dark time, and no saving.");
+        "mean never. Dark: share of occupied time; longest, the longest such time. Empty: lit while nobody is there. "
+        "Switched on: times a day. Wait: from coming into an empty area to light, on average; the delay hardly matters "
+        "for it. First in, last out: lit from the day's first person to its last. Ideal: lit while somebody is there; "
+        "less than that is dark time, and no saving.");
   }
   for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
   if (costs.lights.size() > 1 && know_people(costs))
