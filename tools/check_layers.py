@@ -79,7 +79,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # folders whose files, as any user of the library, may include public headers alone, beside their own and the description
 # of the specs
 OUTSIDE = ("python/src",)
-DESCRIPTION = "src/schema/fields.hpp"
+DESCRIPTION = "src/schema/fields"  # a file a group of specs; schema/fields.hpp includes them all
 # a field: `spec.field`, `&Spec::field`, its name in quotes, or one of a structured binding
 NAMED = re.compile(r'(?:\.|::|->)(\w+)\b(?!\()|"(\w+)"|auto&? \[([^\]]*)')
 DESCRIPTIONS = ("schema/fields.hpp", "schema/words.hpp")
@@ -141,6 +141,8 @@ def violations(root: pathlib.Path):
             fault = room_fault(here, name) if match.group(1) == '"' else None
             if fault:
                 yield f"{here}:{number}: {fault}"
+            if name.startswith("schema/fields/") and DESCRIPTION not in (str(here.parent), str(here.with_suffix(""))):
+                yield f"{here}:{number}: {name} is a part of schema/fields.hpp: include that"
             for prefix, gate in GATES.items():
                 if match.group(1) == "<" and name.startswith(prefix + "/") and str(here) not in gate:
                     yield f"{here}:{number}: {name} may only be included in {' and '.join(gate)}"
@@ -184,7 +186,7 @@ def listed_again(root: pathlib.Path):
         here = file.relative_to(root)
         lines = re.sub(r"auto&? \[[^\]]*\]", lambda found: found[0].replace("\n", " ") + "\n" * found[0].count("\n"),
                        file.read_text()).splitlines()  # a structured binding is one line
-        for spec, fields in specs.items() if str(here) != DESCRIPTION else ():
+        for spec, fields in specs.items() if str(here.parent) != DESCRIPTION else ():
             began, last, seen = 0, 0, set()
             for number, line in enumerate(lines, 1):
                 named = {name for names in NAMED.findall(line) for name in re.findall(r"\w+", "".join(names))} & fields
@@ -200,8 +202,8 @@ def listed_again(root: pathlib.Path):
 
 def described_specs(root: pathlib.Path):
     """The fields of each spec that has enough of them for a list to be one of all; labels are often left out."""
-    file = root / DESCRIPTION
-    found = re.findall(r"struct Fields<([\w:]+)> \{(.*?)\n\};", file.read_text() if file.is_file() else "", re.DOTALL)
+    text = "".join(file.read_text() for file in sorted((root / DESCRIPTION).glob("*.hpp")))
+    found = re.findall(r"struct Fields<([\w:]+)> \{(.*?)\n\};", text, re.DOTALL)
     specs = {spec: set(re.findall(r"FIELD\((\w+)", text)) for spec, text in found}
     return {spec: fields for spec, fields in specs.items() if len(fields) >= 6}
 

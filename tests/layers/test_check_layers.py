@@ -29,11 +29,22 @@ class SplitNames(unittest.TestCase):
                              ["tests/unit/door_test.cpp:2:"])
 
 
+class PartsOfFields(unittest.TestCase):
+    def test_only_the_whole_includes_its_parts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("src/schema/fields.hpp", "src/schema/fields/doors.hpp", "src/io/read/door.cpp"):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text('\n#include "schema/fields/accepted.hpp"\n')
+            found = [text for text in check_layers.violations(root) if "schema/fields" in text]
+            self.assertEqual([text.split(" ")[0] for text in found], ["src/io/read/door.cpp:2:"])
+
+
 class ListedAgain(unittest.TestCase):
     def found_in(self, text):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name, content in (("src/schema/fields.hpp", DESCRIPTION), ("src/io/door.cpp", text)):
+            for name, content in (("src/schema/fields/doors.hpp", DESCRIPTION), ("src/io/door.cpp", text)):
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(content)
             return list(check_layers.listed_again(root))
