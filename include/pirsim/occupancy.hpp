@@ -11,13 +11,20 @@
 
 namespace pirsim {
 
+/// How many people were in one area, at the moments of the counts that it is a part of.
+struct AreaCountsSpec {
+  std::string area;
+  std::string column;       ///< of the counts' file
+  std::vector<int> people;  ///< (n_times)
+};
 /// How many people were there, at moments.
 struct CountsSpec {
   std::string file;             ///< CSV, or empty; relative to the script
   std::string time, column;     ///< columns of the file; empty: found by their usual names
   std::string begin;            ///< local date and time of times_s 0; empty: seconds of the run
   std::vector<double> times_s;  ///< ascending
-  std::vector<int> people;      ///< (n_times)
+  std::vector<int> people;      ///< (n_times) in all
+  std::vector<AreaCountsSpec> areas{};  ///< counted by themselves; the rest of the people are elsewhere
   Where most;                   ///< where the greatest number stands
 };
 

@@ -35,7 +35,7 @@ struct Table {
   std::string text;
   std::vector<ColumnInfo> columns;
 };
-/// By file name: rooms.csv, sensors.csv, days.csv, effects.csv; areas.csv if there are areas.
+/// By file name: rooms.csv, sensors.csv, days.csv, effects.csv; areas.csv and doors.csv if there are any.
 [[nodiscard]] std::map<std::string, Table> tables(const Description& described);
 [[nodiscard]] std::string data_package(const Description& described, const std::map<std::string, Table>& tables);
 [[nodiscard]] std::string readme(const Description& described);

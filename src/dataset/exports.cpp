@@ -47,7 +47,7 @@ std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading
   const auto step = static_cast<std::size_t>(rows_per_reading);
   for (std::size_t first = 0; first + step <= rows.size(); first += step) {
     const Sample& last = rows[first + step - 1];
-    Reading& reading = result.emplace_back(Reading{last.clock, last.people, last.bits});
+    Reading& reading = result.emplace_back(Reading{last.clock, last.people, last.people_of_areas, last.bits});
     for (const Sample& row : rows.subspan(first, step)) {
       for (std::size_t i = 0; i < row.bits.size(); ++i) reading.bits[i] |= row.bits[i];
     }
@@ -55,16 +55,21 @@ std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading
   return result;
 }
 
-std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors) {
+std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors,
+                      const std::vector<std::string>& areas) {
   std::string text = "Date,Time";
   for (const std::string& sensor : sensors) text += ',' + sensor + "_PIR";
-  text += ",Room_Occupancy_Count\n";
+  text += ",Room_Occupancy_Count";
+  for (const std::string& area : areas) text += ',' + area + "_Occupancy_Count";
+  text += '\n';
   for (const Reading& reading : readings) {
     std::string date = date_of(reading.clock);
     std::ranges::replace(date, '-', '/');
     text += date + ',' + time_of(reading.clock);
     for (const std::uint8_t bit : reading.bits) text += bit != 0 ? ",1" : ",0";
-    text += ',' + std::to_string(reading.people) + '\n';
+    text += ',' + std::to_string(reading.people);
+    for (const int people : reading.people_of_areas) text += ',' + std::to_string(people);
+    text += '\n';
   }
   return text;
 }

@@ -16,6 +16,7 @@ namespace pirsim::dataset {
 struct Reading {
   std::string clock;  ///< of its end
   int people = 0;
+  std::vector<int> people_of_areas;  ///< (n_areas) as a Sample's
   std::vector<std::uint8_t> bits;
   [[nodiscard]] bool any() const;
 };
@@ -23,8 +24,10 @@ struct Reading {
 [[nodiscard]] std::optional<int> rows_per_reading(const SensingSpec& sensing);
 [[nodiscard]] std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading);
 
-/// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count.
-[[nodiscard]] std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors);
+/// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count, and
+/// <area>_Occupancy_Count of each area.
+[[nodiscard]] std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors,
+                                    const std::vector<std::string>& areas);
 /// As io::CasasWriter has it.
 [[nodiscard]] std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors,
                                    const std::vector<std::string>& doors);

@@ -168,6 +168,8 @@ std::string readme(const Description& described) {
       "to, and which effects were drawn for it.\n";
   if (!described.columns.areas.empty())
     text += "- `areas.csv`: the named parts of each room's floor; rows count the people of each.\n";
+  if (!described.columns.doors.empty())
+    text += "- `doors.csv`: which areas each door joins; rows have a column of its contact.\n";
   text += rooms_and_scripts(described);
   if (recipe.occupants == Occupants::told)
     text += "- `occupants/`: who is where and does what, a line a window and person.\n";

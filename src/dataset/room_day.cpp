@@ -68,7 +68,7 @@ class DayWriter {
     for (const Export shape : recipe_.exports) {
       if (shape == Export::uci864) {
         const int n_rows = rows_per_reading(recipe_.sensing).value();
-        add(path("exports/uci864", ".csv"), to_uci864(readings(result.samples, n_rows), sensors_));
+        add(path("exports/uci864", ".csv"), to_uci864(readings(result.samples, n_rows), sensors_, areas_));
       }
       if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result, sensors_, doors_));
     }

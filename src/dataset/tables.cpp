@@ -109,6 +109,31 @@ constexpr Column<AreaLine> areas[]{
      [](const AreaLine& line) -> Cell { return line.floor_m2; }},
 };
 
+struct DoorLine {
+  int room;
+  const DoorSpec& door;
+  std::string_view area, beyond;
+};
+
+/// towards: -1 inwards, 1 outwards.
+std::string_view area_beside(const DoorSpec& door, double towards, const SceneSpec& scene, const Areas& areas) {
+  constexpr double beyond_wall_m = 0.3;  // assumed: thicker than half of any inner wall, nearer than the next room
+  const Vec2 beside = floor_point(door.world_from_door * Vec3(0.0, 0.0, towards * beyond_wall_m));
+  return scene.floor.contains(beside) ? areas.name_at(beside) : "outside";
+}
+
+constexpr Column<DoorLine> doors[]{
+    {room_column, room},
+    {{"door", Holds::text, "Its contact is the rows' column door_ and this."},
+     [](const DoorLine& line) -> Cell { return std::string_view(line.door.id); }},
+    {{"area", Holds::text, "Inwards: where its mark's -Z points.", {}, When::with_areas},
+     [](const DoorLine& line) -> Cell { return line.area; }},
+    {{"beyond", Holds::text, "The area on the other side, or outside.", {}, When::with_areas},
+     [](const DoorLine& line) -> Cell { return line.beyond; }},
+    {{"width_m", Holds::number, "Of the leaf.", "m", When::always, {}, decimals},
+     [](const DoorLine& line) -> Cell { return line.door.width_m; }},
+};
+
 struct RecordLine {
   int room, day;
   std::string part;
@@ -204,6 +229,13 @@ std::map<std::string, Table> tables(const Description& described) {
       for (std::size_t i = 0; i < areas.size(); ++i) csv.write({one.number, areas.names()[i], areas.areas_m2()[i]});
     }
   };
+  const auto add_doors = [&](auto& csv) {
+    for (const DescribedRoom& one : described.rooms) {
+      const Areas areas(one.scene);
+      for (const DoorSpec& door : one.scene.doors)
+        csv.write({one.number, door, area_beside(door, -1.0, one.scene, areas), area_beside(door, 1.0, one.scene, areas)});
+    }
+  };
   const auto add_days = [&](auto& csv) {
     for (std::size_t i = 0; i < described.days.size(); ++i) {
       const RoomDayRecord& record = described.days[i];
@@ -231,6 +263,7 @@ std::map<std::string, Table> tables(const Description& described) {
                                     {"days.csv", table_of(days, add_days)},
                                     {"effects.csv", table_of(effects, add_effects)}};
   if (!described.columns.areas.empty()) made.emplace("areas.csv", table_of(areas, add_areas));
+  if (!described.columns.doors.empty()) made.emplace("doors.csv", table_of(doors, add_doors));
   return made;
 }
 

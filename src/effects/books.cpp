@@ -166,29 +166,34 @@ double moment_of(const TrialInForce& trial, double share) {
   return trial.begins_s[static_cast<std::size_t>(run)] + (share * n - run) * duration_s;
 }
 
-/// Counts with `by` more people from one moment to another. That it begins and ends there is a reading of its own.
+/// Counts with `by` more people from one moment to another, in the fullest of counted areas (assumed). That it begins and ends there is a reading of its own.
 void miscount(CountsSpec& counts, double from_s, double to_s, int by) {
   constexpr double apart_s = 1.0;
   CountsSpec changed = counts;
   changed.times_s.clear();
   changed.people.clear();
-  int before = counts.people.front();
-  const auto add = [&](double at_s, int people) {
+  for (AreaCountsSpec& area : changed.areas) area.people.clear();
+  const auto add = [&](double at_s, std::size_t reading, int off) {
     if (!changed.times_s.empty() && at_s <= changed.times_s.back()) return;
     changed.times_s.push_back(at_s);
-    changed.people.push_back(std::max(0, people));
+    changed.people.push_back(std::max(0, counts.people[reading] + off));
+    const auto people_in = [&](const AreaCountsSpec& area) { return area.people[reading]; };
+    const auto fullest = std::ranges::max_element(counts.areas, {}, people_in);
+    for (std::size_t i = 0; i < counts.areas.size(); ++i)
+      changed.areas[i].people.push_back(
+          std::max(0, people_in(counts.areas[i]) + (&counts.areas[i] == &*fullest ? off : 0)));
   };
-  const auto add_edge = [&](double at_s, int off_before, int off_after) {
-    add(at_s - apart_s, before + off_before);
-    add(at_s, before + off_after);
+  const auto add_edge = [&](double at_s, std::size_t reading, int off_before, int off_after) {
+    add(at_s - apart_s, reading, off_before);
+    add(at_s, reading, off_after);
   };
   bool begun = false, ended = false;
   for (std::size_t i = 0; i < counts.people.size(); ++i) {
     const double at_s = counts.times_s[i];
-    if (!begun && at_s > from_s) begun = (add_edge(from_s, 0, by), true);
-    if (begun && !ended && at_s > to_s) ended = (add_edge(to_s, by, 0), true);
-    add(at_s, counts.people[i] + (begun && !ended ? by : 0));
-    before = counts.people[i];
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    if (!begun && at_s > from_s) begun = (add_edge(from_s, before, 0, by), true);
+    if (begun && !ended && at_s > to_s) ended = (add_edge(to_s, before, by, 0), true);
+    add(at_s, i, begun && !ended ? by : 0);
   }
   counts = std::move(changed);
 }

@@ -21,6 +21,24 @@ void check_begin(const std::string& begin, const std::string& field, const TellF
   tell(field, "expected the date and time of second 0, e.g. 2026-03-02T07:00, got '" + begin + "'");
 }
 
+void check_areas(const CountsSpec& counts, const TellFault& tell) {
+  std::vector<int> sum(counts.people.size(), 0);
+  for (auto area = counts.areas.begin(); area != counts.areas.end(); ++area) {
+    if (std::find_if(counts.areas.begin(), area, [&](const auto& other) { return other.area == area->area; }) != area)
+      return tell("areas", "'" + area->area + "' appears twice");
+    if (area->people.size() != sum.size())
+      return tell("areas", "'" + area->area + "': expected as many numbers as times");
+    if (std::ranges::any_of(area->people, [](int people) { return people < 0; }))
+      return tell("areas", "'" + area->area + "': a number of people is below 0");
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += area->people[i];
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    if (sum[i] <= counts.people[i]) continue;
+    return tell("areas", std::to_string(sum[i]) + " people are in areas at reading " + std::to_string(i + 1) +
+                             ", but only " + std::to_string(counts.people[i]) + " in all");
+  }
+}
+
 void check_counts(const CountsSpec& counts, const std::optional<int>& persons, const TellFault& tell) {
   check_begin(counts.begin, "counts", tell);
   if (counts.times_s.empty()) return tell("counts", "expected at least one reading");
@@ -32,6 +50,7 @@ void check_counts(const CountsSpec& counts, const std::optional<int>& persons, c
   if (fewest < 0) tell("counts", "a number of people is below 0");
   const auto allowed = static_cast<int>(accepted::people_of_counts.max);
   if (most > allowed) tell("counts", "more than " + std::to_string(allowed) + " people");
+  check_areas(counts, tell);
   if (persons && *persons < most) {
     tell("persons",
          std::to_string(*persons) + " different people, but up to " + std::to_string(most) + " are there at once");

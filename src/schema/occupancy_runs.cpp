@@ -43,6 +43,11 @@ std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
 
 }  // namespace
 
+bool are_as_many(const CountsSpec& counts, std::size_t k) {
+  return counts.people[k] == counts.people[k - 1] &&
+         std::ranges::all_of(counts.areas, [k](const auto& area) { return area.people[k] == area.people[k - 1]; });
+}
+
 std::optional<DataSpan> data_span(const OccupancySpec& occupancy) {
   const std::vector<double> moments = moments_of(occupancy);
   if (moments.empty()) return std::nullopt;
@@ -105,6 +110,11 @@ std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const Sce
   Diagnostics faults;
   require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
   require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
+  if (occupancy.counts) {
+    std::vector<std::string> areas;
+    for (const AreaCountsSpec& area : occupancy.counts->areas) areas.push_back(area.area);
+    require_names(areas, ids_of(scene.areas), "area", scene.name, occupancy.where, faults);
+  }
   if (scene.entrances.empty() && !occupancy.positions)
     faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
   faults.throw_if_errors();

@@ -1,6 +1,7 @@
 // What a run of a script with an occupancy covers, and whom it adds.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ struct OccupancyRuns {
 };
 /// Of specs in which check_together() finds no fault. begin: the script's.
 [[nodiscard]] OccupancyRuns runs_of(const OccupancySpec& occupancy, const std::string& begin);
+
+/// Are as many people there as at the moment before, in each counted area too? k: from 1.
+[[nodiscard]] bool are_as_many(const CountsSpec& counts, std::size_t k);
 
 /// Does it have days, which replicates take in turn?
 [[nodiscard]] inline bool has_days(const OccupancySpec& occupancy) noexcept {

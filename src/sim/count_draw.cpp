@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <ranges>
+#include <utility>
 
 #include "pirsim/random.hpp"
 
@@ -18,7 +21,7 @@ constexpr double settled_s = 60.0;  // assumed: who has come or gone for less st
 
 class Draw {
  public:
-  explicit Draw(const CountSource& source) : source_(source), free_(source.n_seats + source.n_standing, 1) {
+  explicit Draw(const CountSource& source) : source_(source), free_(source.part_of_place.size(), 1) {
     for (std::size_t person = 0; person < source.n_people; ++person) absent_.push_back({person, never});
   }
 
@@ -27,13 +30,15 @@ class Draw {
     if (times_s.empty()) return {};
     const auto later = std::ranges::upper_bound(times_s, source_.begin_s);
     auto k = static_cast<std::size_t>(later - times_s.begin());
-    int now = source_.people[k == 0 ? 0 : k - 1];
+    std::size_t now = k == 0 ? 0 : k - 1;
     Stream first({source_.seed, source_.run, 0, Purpose::occupancy});
-    for (int i = 0; i < now; ++i) come(CountedVisit::from_the_beginning, first);
+    for (std::size_t part = 0; part < n_parts(); ++part) {
+      for (int i = 0; i < source_.people[part][now]; ++i) come(part, CountedVisit::from_the_beginning, first);
+    }
     double since_s = source_.begin_s;
     for (; k < times_s.size() && since_s < source_.end_s; ++k) {
-      change(source_.people[k] - now, since_s, times_s[k], static_cast<std::uint32_t>(k + 1));
-      now = source_.people[k];
+      change(now, k, since_s);
+      now = k;
       since_s = times_s[k];
     }
     return std::move(visits_);
@@ -49,13 +54,50 @@ class Draw {
     std::size_t visit;  ///< index
     double since_s;
   };
+  /// Somebody comes to a part of the floor, goes from one, or both.
+  struct Step {
+    std::optional<std::size_t> from, to;
+  };
 
-  /// reading: which of the data, from 1.
-  void change(int by, double since_s, double at_s, std::uint32_t reading) {
-    if (by == 0) return;
-    Stream stream({source_.seed, source_.run, reading, Purpose::occupancy});
-    for (const double moment_s : moments(static_cast<std::size_t>(std::abs(by)), since_s, at_s, stream))
-      by > 0 ? come(moment_s, stream) : go(moment_s, stream);
+  [[nodiscard]] std::size_t n_parts() const { return source_.people.size(); }
+  [[nodiscard]] std::size_t part_of(const Present& one) const {
+    return source_.part_of_place[visits_[one.visit].place];
+  }
+
+  /// From one reading (index) to another.
+  void change(std::size_t before, std::size_t reading, double since_s) {
+    std::vector<std::size_t> left, reached;
+    for (std::size_t part = 0; part < n_parts(); ++part) {
+      const int by = source_.people[part][reading] - source_.people[part][before];
+      for (int i = 0; i < std::abs(by); ++i) (by < 0 ? left : reached).push_back(part);
+    }
+    if (left.empty() && reached.empty()) return;
+    Stream stream({source_.seed, source_.run, static_cast<std::uint32_t>(reading + 1), Purpose::occupancy});
+    const std::vector<Step> steps = steps_between(std::move(left), std::move(reached), stream);
+    const std::vector<double> moments_s = moments(steps.size(), since_s, source_.times_s[reading], stream);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (steps[i].from && steps[i].to) {
+        move(*steps[i].from, *steps[i].to, moments_s[i], stream);
+      } else {
+        steps[i].to ? come(*steps[i].to, moments_s[i], stream) : go(*steps[i].from, moments_s[i], stream);
+      }
+    }
+  }
+
+  /// Whoever is missing in a part and may have gone to another has; who went where, and in which order, is drawn.
+  [[nodiscard]] std::vector<Step> steps_between(std::vector<std::size_t> left, std::vector<std::size_t> reached,
+                                                Stream& stream) const {
+    if (n_parts() > 1) shuffle(left, stream), shuffle(reached, stream);
+    std::vector<Step> steps(std::max(left.size(), reached.size()));
+    for (std::size_t i = 0; i < left.size(); ++i) steps[i].from = left[i];
+    for (std::size_t i = 0; i < reached.size(); ++i) steps[i].to = reached[i];
+    if (n_parts() > 1) shuffle(steps, stream);
+    return steps;
+  }
+  template <typename T>
+  static void shuffle(std::vector<T>& items, Stream& stream) {
+    for (std::size_t n = items.size(); n > 1; --n)
+      std::swap(items[n - 1], items[stream.index(static_cast<std::uint32_t>(n))]);
   }
 
   /// n of them, ascending, in seconds of the run.
@@ -74,39 +116,56 @@ class Draw {
     return result;
   }
 
-  void come(double at_s, Stream& stream) {
-    const std::size_t who = pick(absent_, at_s, stream);
-    visits_.push_back({absent_[who].person, take_place(stream), at_s});
+  void come(std::size_t to, double at_s, Stream& stream) {
+    const std::size_t who = pick(absent_, at_s, stream, [](const Waiting&) { return true; });
+    visits_.push_back({absent_[who].person, take_place(to, stream), at_s});
     absent_.erase(absent_.begin() + static_cast<std::ptrdiff_t>(who));
     present_.push_back({visits_.size() - 1, at_s});
   }
-  void go(double at_s, Stream& stream) {
-    const std::size_t who = pick(present_, at_s, stream);
+  /// Ends the visit of somebody there.
+  CountedVisit& go_from(std::size_t from, double at_s, Stream& stream) {
+    const std::size_t who =
+        pick(present_, at_s, stream, [&](const Present& one) { return part_of(one) == from; });
     CountedVisit& visit = visits_[present_[who].visit];
     visit.goes_s = at_s;
     free_[visit.place] = 1;
-    absent_.push_back({visit.person, at_s});
     present_.erase(present_.begin() + static_cast<std::ptrdiff_t>(who));
+    return visit;
+  }
+  void go(std::size_t from, double at_s, Stream& stream) {
+    absent_.push_back({go_from(from, at_s, stream).person, at_s});
+  }
+  void move(std::size_t from, std::size_t to, double at_s, Stream& stream) {
+    CountedVisit& before = go_from(from, at_s, stream);
+    before.goes_to = CountedVisit::Beyond::other_part;
+    CountedVisit next{.person = before.person, .place = take_place(to, stream), .comes_s = at_s};
+    next.comes_from = CountedVisit::Beyond::other_part;
+    visits_.push_back(next);
+    present_.push_back({visits_.size() - 1, at_s});
   }
 
-  /// One who has been so for long, or else the one who has been so for longest: the list is in that order.
-  template <typename List>
-  [[nodiscard]] static std::size_t pick(const List& list, double at_s, Stream& stream) {
+  /// Of those that fit one who has been so for long, or else the one who has been so for longest: the list is in that
+  /// order.
+  template <typename List, typename Fits>
+  [[nodiscard]] static std::size_t pick(const List& list, double at_s, Stream& stream, const Fits& fits) {
     const auto recent = std::ranges::find_if(list, [&](const auto& one) { return one.since_s > at_s - settled_s; });
-    const auto n = static_cast<std::uint32_t>(recent - list.begin());
-    const std::uint32_t drawn = stream.index(std::max(1U, n));
-    return drawn;
+    const auto n = static_cast<std::uint32_t>(std::count_if(list.begin(), recent, fits));
+    std::uint32_t before = stream.index(std::max(1U, n));
+    const auto drawn = std::ranges::find_if(list, [&](const auto& one) { return fits(one) && before-- == 0; });
+    return static_cast<std::size_t>(drawn - list.begin());
   }
 
-  [[nodiscard]] std::size_t take_place(Stream& stream) {
-    const auto seats = free_.begin() + static_cast<std::ptrdiff_t>(source_.n_seats);
-    const bool sits = std::find(free_.begin(), seats, 1) != seats;
-    const auto first = sits ? free_.begin() : seats, last = sits ? seats : free_.end();
-    auto left = stream.index(static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(1, std::count(first, last, 1))));
-    for (auto place = first; place != last; ++place) {
-      if (*place == 0 || left-- > 0) continue;
-      *place = 0;
-      return static_cast<std::size_t>(place - free_.begin());
+  [[nodiscard]] std::size_t take_place(std::size_t part, Stream& stream) {
+    const auto is_free = [&](std::size_t place) { return free_[place] != 0 && source_.part_of_place[place] == part; };
+    const auto seats = std::views::iota(std::size_t{0}, source_.n_seats);
+    const bool sits = std::ranges::any_of(seats, is_free);
+    const auto places = sits ? seats : std::views::iota(source_.n_seats, free_.size());
+    const auto n_free = static_cast<std::uint32_t>(std::count_if(places.begin(), places.end(), is_free));
+    auto before = stream.index(std::max(1U, n_free));
+    for (const std::size_t place : places) {
+      if (!is_free(place) || before-- > 0) continue;
+      free_[place] = 0;
+      return place;
     }
     return 0;  // never: there is a place for everybody
   }

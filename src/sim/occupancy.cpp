@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "pirsim/geometry.hpp"
+#include "schema/areas.hpp"
 #include "sim/actor.hpp"
 #include "sim/count_draw.hpp"
 #include "sim/day_draw.hpp"
@@ -34,12 +39,53 @@ std::vector<std::string> shared_seats(const TrialModel& trial) {
   return seats;
 }
 
+/// Parts of the floor whose people are counted by themselves: the counts' areas, then what is in none of these.
+class CountedParts {
+ public:
+  CountedParts(const CountsSpec& counts, const Areas& areas) : counts_(counts), areas_(areas) {}
+
+  [[nodiscard]] std::size_t size() const { return counts_.areas.size() + 1; }
+  [[nodiscard]] std::size_t at(const Vec2& place) const {
+    const std::string_view area = areas_.name_at(place);
+    const auto part = std::ranges::find(counts_.areas, area, &AreaCountsSpec::area);
+    return static_cast<std::size_t>(part - counts_.areas.begin());
+  }
+  /// (n_times)
+  [[nodiscard]] std::vector<int> people(std::size_t part) const {
+    if (part < counts_.areas.size()) return counts_.areas[part].people;
+    std::vector<int> rest = counts_.people;
+    for (const AreaCountsSpec& area : counts_.areas)
+      std::ranges::transform(rest, area.people, rest.begin(), std::minus<>());
+    return rest;
+  }
+  /// For messages.
+  [[nodiscard]] std::string name(std::size_t part, const SceneSpec& scene) const {
+    if (counts_.areas.empty()) return scene.name;
+    return part < counts_.areas.size() ? "area '" + counts_.areas[part].area + "'" : "the rest of " + scene.name;
+  }
+
+ private:
+  const CountsSpec& counts_;
+  const Areas& areas_;
+};
+
 /// Places as a CountedVisit numbers them: seats, then where one stands.
 struct Places {
   std::vector<std::string> seats;
   std::vector<Vec2> standing;
+  std::vector<std::size_t> parts{};  ///< (n_places) of the floor, that each is in
   [[nodiscard]] bool is_seat(std::size_t place) const { return place < seats.size(); }
 };
+
+Places places_of(const TrialModel& trial, const SceneSpec& scene, const CountedParts& parts) {
+  Places places{shared_seats(trial), trial.occupancy->standing};
+  for (const std::string& id : places.seats) {
+    const SeatSpec& seat = *std::ranges::find(scene.seats, id, &SeatSpec::id);
+    places.parts.push_back(parts.at(floor_point(seat.world_from_seat.origin)));
+  }
+  for (const Vec2& point : places.standing) places.parts.push_back(parts.at(point));
+  return places;
+}
 
 ScriptedAction timed(Action what, double at_s) {
   ScriptedAction action;
@@ -61,7 +107,8 @@ class Visits {
         run_(run),
         trial_(study.trial_of(run)),
         occupancy_(*trial_.occupancy),
-        places_{shared_seats(trial_), occupancy_.standing},
+        parts_(occupancy_.counts, study.areas()),
+        places_(places_of(trial_, study.scene(), parts_)),
         free_s_(trial_.people.size(), 0.0) {
     for (std::size_t i = 0; i < trial_.people.size(); ++i) {
       if (is_occupant(trial_.people[i])) occupants_.push_back(i);
@@ -83,13 +130,14 @@ class Visits {
 
  private:
   [[nodiscard]] CountSource source() const {
-    CountSource source{.times_s = occupancy_.counts.times_s, .people = occupancy_.counts.people};
+    CountSource source{.times_s = occupancy_.counts.times_s};
+    for (std::size_t part = 0; part < parts_.size(); ++part) source.people.push_back(parts_.people(part));
     source.begin_s = study_.data_second_of(run_);
     source.end_s = source.begin_s + trial_.duration_s.value_or(0.0);
     if (occupancy_.changes_within_s) source.changes_within_s = *occupancy_.changes_within_s;
     source.n_people = occupants_.size();
     source.n_seats = places_.seats.size();
-    source.n_standing = places_.standing.size();
+    source.part_of_place = places_.parts;
     source.seed = study_.seed();
     source.run = run_;
     return source;
@@ -100,14 +148,22 @@ class Visits {
     const auto any_door = [&] { return stream.index(static_cast<std::uint32_t>(doors.size())); };
     const std::uint32_t in_by = any_door(), out_by = any_door();
     const double free_s = free_s_[person];
+    std::optional<double> moves_s;
     if (visit.comes_s == CountedVisit::from_the_beginning) {
       actions.push_back(untimed(action::Appear{stand_of(visit.place, person), 0.0}));
+    } else if (visit.comes_from == CountedVisit::Beyond::other_part) {
+      moves_s = std::max(visit.comes_s - move_s(person, last_place_[person], visit.place), free_s);
     } else {
       const double at_s = visit.comes_s - crossings(person, in_by, visit.place).in_s;
       actions.push_back(timed(action::Enter{doors[in_by]}, std::max(at_s, free_s)));
     }
-    stay(visit, person, stream, actions);
+    stay(visit, person, stream, moves_s, actions);
+    last_place_[person] = visit.place;
     if (visit.goes_s == CountedVisit::to_the_end) return;
+    if (visit.goes_to == CountedVisit::Beyond::other_part) {
+      free_s_[person] = std::max({visit.comes_s, moves_s.value_or(0.0), free_s});
+      return;
+    }
     constexpr double turns_round_s = 1.0;  // assumed: of who is sent out again at once
     const double at_s = visit.goes_s - crossings(person, out_by, visit.place).out_s;
     free_s_[person] = std::max({at_s, visit.comes_s + turns_round_s, free_s});
@@ -115,8 +171,13 @@ class Visits {
   }
 
   /// What they do until something else is called for.
-  void stay(const CountedVisit& visit, std::size_t person, Stream& stream, std::vector<ScriptedAction>& actions) const {
-    for (Action& action : taking(visit.place, person)) actions.push_back(untimed(std::move(action)));
+  /// begins_s: when they set out for the place, if not at once.
+  void stay(const CountedVisit& visit, std::size_t person, Stream& stream, std::optional<double> begins_s,
+            std::vector<ScriptedAction>& actions) const {
+    for (Action& action : taking(visit.place, person)) {
+      actions.push_back(untimed(std::move(action)));
+      actions.back().at_s = std::exchange(begins_s, std::nullopt);
+    }
     if (!places_.is_seat(visit.place)) return actions.push_back(untimed(action::Wait{until_next_s}));
     const double end_s = std::min(visit.goes_s, trial_.duration_s.value_or(0.0));
     for (double left_s = end_s - std::max(visit.comes_s, 0.0); left_s > 0.0;) {
@@ -143,7 +204,7 @@ class Visits {
     return plan.stand(plan.place.world_from_seat);
   }
 
-  /// How long somebody alone takes from setting out to crossing the floor's edge.
+  /// How long somebody alone takes from setting out to crossing the edge of the place's part of the floor.
   struct Crossings {
     double in_s = 3.0, out_s = 10.0;
   };
@@ -151,6 +212,37 @@ class Visits {
     const auto [known, is_new] = crossings_.try_emplace({person, door, place});
     if (is_new) known->second = rehearse(person, door, place);
     return known->second;
+  }
+
+  /// How long somebody alone takes from setting out in one part to the place's part.
+  double move_s(std::size_t person, std::size_t from, std::size_t to) {
+    const auto [known, is_new] = moves_.try_emplace({person, from, to});
+    if (is_new) known->second = rehearse_move(person, from, to);
+    return known->second;
+  }
+  [[nodiscard]] double rehearse_move(std::size_t person, std::size_t from, std::size_t to) const {
+    constexpr double to_settle_s = 15.0, longest_s = 600.0, usual_s = 5.0;
+    auto plan = std::make_shared<DayPlan>(trial_.people.size());
+    std::vector<ScriptedAction>& actions = (*plan)[person];
+    actions.push_back(untimed(action::Appear{stand_of(from, person), 0.0}));
+    for (Action& action : taking(from, person)) actions.push_back(untimed(std::move(action)));
+    actions.push_back(untimed(places_.is_seat(from) ? Action(action::Work{until_next_s})
+                                                    : Action(action::Wait{until_next_s})));
+    const std::size_t first = actions.size();
+    for (Action& action : taking(to, person)) actions.push_back(untimed(std::move(action)));
+    actions[first].at_s = to_settle_s;
+    Actor actor(study_, run_, static_cast<std::uint32_t>(person), plan);
+    for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
+      actor.advance(study_, tick, {}, {});
+      const double now_s = static_cast<double>(tick) * study_.tick_s();
+      if (now_s > to_settle_s && is_in(actor, places_.parts[to])) return now_s - to_settle_s;
+    }
+    return usual_s;  // of a part that is left before it is reached: nothing to be tried out
+  }
+
+  /// Is somebody over a part of the floor?
+  [[nodiscard]] bool is_in(const Actor& actor, std::size_t part) const {
+    return actor.counts_on(study_.scene().floor) && parts_.at(actor.motion().position()) == part;
   }
 
   /// The person comes, takes the place and goes again, as in the run but alone.
@@ -172,7 +264,7 @@ class Visits {
     bool was_inside = false;
     for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
       actor.advance(study_, tick, {}, {});
-      const bool is_inside = actor.counts_on(study_.scene().floor);
+      const bool is_inside = is_in(actor, places_.parts[place]);
       const double now_s = static_cast<double>(tick) * study_.tick_s();
       if (is_inside && !was_inside && now_s < leaves_s) found.in_s = now_s;
       if (!is_inside && was_inside && now_s > leaves_s) found.out_s = now_s - leaves_s;
@@ -185,20 +277,35 @@ class Visits {
   std::uint32_t run_;
   const TrialModel& trial_;
   const OccupancyInForce& occupancy_;
+  CountedParts parts_;
   Places places_;
   std::vector<std::size_t> occupants_;  ///< indices into the trial's people
   std::vector<double> free_s_;          ///< (n_people) when the last visit so far was called off
+  std::map<std::size_t, std::size_t> last_place_;  ///< of each person, so far
   std::map<std::tuple<std::size_t, std::uint32_t, std::size_t>, Crossings> crossings_;
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, double> moves_;
+};
+
+/// A part of the floor that more people are in than can sit there.
+struct PartPlaces {
+  std::size_t part = 0, most = 0, seats = 0;
 };
 
 }  // namespace
 
 void plan_occupancy(TrialModel& trial, const SceneSpec& scene, Diagnostics& faults) {
   OccupancyInForce& occupancy = *trial.occupancy;
-  const std::vector<int>& people = occupancy.counts.people;
-  const auto most = static_cast<std::size_t>(people.empty() ? 0 : *std::ranges::max_element(people));
-  const std::size_t seats = shared_seats(trial).size();
-  if (most <= seats) return;
+  const Areas areas(scene);
+  const CountedParts parts(occupancy.counts, areas);
+  std::vector<PartPlaces> tight;
+  const Places seats = places_of(trial, scene, parts);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const std::vector<int> people = parts.people(part);
+    const PartPlaces found{part, static_cast<std::size_t>(people.empty() ? 0 : *std::ranges::max_element(people)),
+                           static_cast<std::size_t>(std::ranges::count(seats.parts, part))};
+    if (found.most > found.seats) tight.push_back(found);
+  }
+  if (tight.empty()) return;
   // Where the widest of them can stand, everybody can.
   const PersonModel* widest = nullptr;
   for (const PersonModel& person : trial.people) {
@@ -206,12 +313,16 @@ void plan_occupancy(TrialModel& trial, const SceneSpec& scene, Diagnostics& faul
     if (widest == nullptr || person.floor->clearance_m() > widest->floor->clearance_m()) widest = &person;
   }
   occupancy.standing = StandingPlaces(scene, *widest, occupancy.entrances.front()).all();
-  const std::size_t places = seats + occupancy.standing.size();
-  if (most <= places) return;
-  faults.error(occupancy.counts.most.file.empty() ? occupancy.where : occupancy.counts.most,
-               std::to_string(most) + " people, but " + scene.name + " holds " + std::to_string(places) + ": " +
-                   std::to_string(seats) + (seats == 1 ? " seat" : " seats") + " that can be used and " +
-                   std::to_string(occupancy.standing.size()) + " places to stand");
+  const Places all = places_of(trial, scene, parts);
+  for (const PartPlaces& part : tight) {
+    const auto places = static_cast<std::size_t>(std::ranges::count(all.parts, part.part));
+    if (part.most <= places) continue;
+    faults.error(occupancy.counts.most.file.empty() ? occupancy.where : occupancy.counts.most,
+                 std::to_string(part.most) + " people, but " + parts.name(part.part, scene) + " holds " +
+                     std::to_string(places) + ": " + std::to_string(part.seats) +
+                     (part.seats == 1 ? " seat" : " seats") + " that can be used and " +
+                     std::to_string(places - part.seats) + " places to stand");
+  }
 }
 
 DayPlan draw_occupancy(const CompiledStudy& study, std::uint32_t run) { return Visits(study, run).plan(); }

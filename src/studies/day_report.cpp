@@ -29,7 +29,7 @@ std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ?
 }  // namespace
 
 DayReport::DayReport(const Model& model)
-    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window), areas_(model) {
+    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window), areas_(model), watched_(Areas(model.scene()).of_sensors()) {
   const Vec2 size = model.compiled().scene().floor.upper() - model.compiled().scene().floor.lower();
   columns_ = static_cast<std::size_t>(std::ceil(size.x / square_m));
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
@@ -57,13 +57,15 @@ void DayReport::add_run(const RunResult& result) {
   if (has_clock_) from_h_ = hours_of(first.clock) - first.time_s / hour_s;
   longest_s_ = std::max(longest_s_, result.samples.back().time_s);
   ++days_;
+  const std::vector<double> none(model_->scene().sensors.size(), 0.0);
   for (const Sample& sample : result.samples) {
-    const auto n = static_cast<std::size_t>(sample.people);
-    if (by_people_.size() <= n) by_people_.resize(n + 1, {0.0, std::vector<double>(sample.bits.size(), 0.0)});
-    by_people_[n].windows += 1.0;
     Bin& bin = bin_at(sample.time_s);
     for (std::size_t i = 0; i < sample.bits.size(); ++i) {
       bin.motion[i] += sample.bits[i];
+      const std::optional<std::size_t> area = watched_[i];
+      const auto n = static_cast<std::size_t>(area ? sample.people_of_areas[*area] : sample.people);
+      if (by_people_.size() <= n) by_people_.resize(n + 1, {none, none});
+      by_people_[n].windows[i] += 1.0;
       by_people_[n].motion[i] += sample.bits[i];
     }
     bin.fewest = bin.windows == 0.0 ? sample.people : std::min(bin.fewest, sample.people);
@@ -176,8 +178,9 @@ io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
 
 io::GridChart DayReport::count_chart() const {
   io::GridChart chart;
-  chart.title = "Motion by number of people";
-  chart.note = "percent of rows with motion; empty where there were never so many";
+  chart.title = "Motion by number of people" + std::string(model_->areas().empty() ? "" : " in the sensor's area");
+  chart.note = "percent of rows with motion; empty where there were never so many" +
+               std::string(model_->areas().empty() ? "" : ". A sensor over no area has the people of the whole floor");
   chart.label = "share, %";
   chart.row_label = "sensor";
   chart.column_label = "people";
@@ -186,12 +189,12 @@ io::GridChart DayReport::count_chart() const {
   for (std::size_t i = 0; i < model_->scene().sensors.size(); ++i) {
     chart.rows.push_back(model_->scene().sensors[i].id);
     for (const Count& count : by_people_) {
-      if (count.windows == 0.0) {
+      if (count.windows[i] == 0.0) {
         chart.cells.emplace_back();
         continue;
       }
-      const double share = count.motion[i] / count.windows;
-      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows, 0) + " rows"});
+      const double share = count.motion[i] / count.windows[i];
+      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows[i], 0) + " rows"});
     }
   }
   return chart;
@@ -225,8 +228,8 @@ io::MapChart DayReport::floor_chart() const {
     chart.values.push_back(shown ? std::optional(std::ceil(100.0 * minutes) / 100.0) : std::nullopt);
   }
   chart.plan = plan_of(model_->compiled().scene());
-  chart.signs = io::MapChart::Signs::people;
-  for (const OccupantRow& row : busiest_.people) chart.markers.push_back({row.person, row.place_m, 0.0});
+  for (const SensorSpec& sensor : model_->scene().sensors) chart.markers.push_back(marker_of(sensor));
+  for (const OccupantRow& row : busiest_.people) chart.people.push_back({row.person, row.place_m, 0.0});
   return chart;
 }
 
@@ -261,8 +264,8 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   section.charts.emplace_back(count_chart());
   section.charts.emplace_back(floor_chart());
   section.paragraphs.push_back(
-      "In the map of the floor white triangles are seats, pointing the way who sits there faces; a green line is a "
-      "door, "
+      "In the map of the floor red triangles are sensors and white ones seats, pointing the way that the sensor, or who "
+      "sits there, faces; a green line is a door, "
       "dotted lines are furniture, black areas are walls" +
       std::string(areas_.empty() ? "" : ", violet dashes the borders of named areas") +
       ". Point at anything for its name or value.");

@@ -131,6 +131,10 @@ io::RoomPlan plan_of(const SceneSpec& scene) {
   return plan;
 }
 
+io::RoomPlan::Marker marker_of(const SensorSpec& sensor) {
+  return {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)};
+}
+
 std::string signs_of_maps(const SceneSpec& scene) {
   const std::string signs =
       "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "

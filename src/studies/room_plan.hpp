@@ -16,6 +16,8 @@ enum class MeshRole { ceiling, wall, floor, furniture };
 /// convex hulls of its connected pieces.
 [[nodiscard]] io::RoomPlan plan_of(const SceneSpec& scene);
 
+[[nodiscard]] io::RoomPlan::Marker marker_of(const SensorSpec& sensor);
+
 /// What the signs of a report's maps mean, where their markers are sensors.
 [[nodiscard]] std::string signs_of_maps(const SceneSpec& scene);
 

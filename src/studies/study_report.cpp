@@ -51,10 +51,6 @@ std::optional<double> block_mean(const FloorGrid& grid, Count count, std::size_t
   return sum / squares;
 }
 
-io::MapChart::Marker marker_of(const SensorSpec& sensor) {
-  return {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)};
-}
-
 std::vector<std::string> row_of(const std::string& name, const MapFigures& f) {
   return {name, fixed(f.mean_step, 1), std::to_string(f.greatest_step), fixed(100.0 * f.blind_fraction, 1) + " %",
           fixed(f.seen_area_m2, 2)};

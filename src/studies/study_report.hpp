@@ -44,8 +44,7 @@ class DayReport {
     std::vector<double> people_of_areas;  ///< (n_areas)
   };
   struct Count {
-    double windows = 0.0;
-    std::vector<double> motion;  ///< (n_sensors) windows
+    std::vector<double> windows, motion;  ///< (n_sensors)
   };
   struct Moment {
     std::string time;
@@ -70,11 +69,12 @@ class DayReport {
   double from_h_ = 0.0;  ///< of the day, or of the run if it has no clock
   double longest_s_ = 0.0;
   std::vector<Bin> bins_;
-  std::vector<Count> by_people_;  ///< (most people + 1)
+  std::vector<Count> by_people_;  ///< (most people + 1) of the area that a sensor watches, or of the room
   std::size_t columns_ = 0;       ///< of the floor's squares
   std::vector<double> squares_;   ///< person-seconds
   Moment busiest_;
   AreaTally areas_;
+  std::vector<std::optional<std::size_t>> watched_;  ///< (n_sensors) the area of each, if it is over one
   int days_ = 0;
 };
 

@@ -137,7 +137,7 @@ class Areas(unittest.TestCase):
         report = self.folder / "report.html"
         self.run_study("--report", report, "-o", self.folder / "rows.csv")
         page = report.read_text()
-        for words in ("person-min a run", "rows with motion", "living_room", "bedroom"):
+        for words in ("minutes a run, of all people", "rows with motion", "living_room", "bedroom"):
             self.assertIn(words, page)
         coverage = self.folder / "coverage.yaml"
         coverage.write_text("pirsim_coverage: 1\nspacing_m: 0.5\nduration_s: 4\ntarget: {x_shapes: {}}\n")
@@ -164,7 +164,7 @@ schedule: {{from: "08:50", to: "09:00", arrival: {{mean: "08:52", sd_min: 1}}, s
 split: {{validation_rooms: 0, test_rooms: 0, test_days: 0}}
 rows: .csv
 occupants: true
-exports: [energyplus]
+exports: [energyplus, uci864]
 """)
         pirsim("dataset", recipe, "-o", made, "--sensors", DATA / "sensors")
         own, drawn = (rows((made / f"rows/room_000{n}/day_01.csv").read_text()) for n in (1, 2))
@@ -179,6 +179,11 @@ exports: [energyplus]
         watched = {(row["room"], row["sensor"]): row["area"] for row in rows((made / "sensors.csv").read_text())}
         self.assertEqual(watched["1", "PIR2"], "bedroom")
         self.assertEqual(watched["2", "PIR1"], "")
+        readings = rows((made / "exports/uci864/room_0001/day_01.csv").read_text())
+        at_ends = [row for row in own if row["time"][-2:] in ("00", "30")]
+        self.assertEqual([(one["Room_Occupancy_Count"], one["living_room_Occupancy_Count"]) for one in readings],
+                         [(row["people"], row["people_living_room"]) for row in at_ends])
+        self.assertNotIn("living_room_Occupancy_Count", (made / "exports/uci864/room_0002/day_01.csv").read_text())
         hours = rows((made / "exports/energyplus/presence.csv").read_text())
         self.assertGreater(float(hours[8]["room_0001_living_room_people"]), 0.0)
         package = json.loads((made / "datapackage.json").read_text())

@@ -69,7 +69,7 @@ Json to_json(const MapChart& chart) {
   json["classes"] = Json::array();
   for (const MapChart::Class& one : chart.classes)
     json["classes"].push_back({{"above", one.above}, {"name", one.name}});
-  json["people"] = chart.signs == MapChart::Signs::people;
+  json["people"] = markers(chart.people);
   json["markers"] = markers(chart.markers);
   json["seats"] = markers(chart.plan.seats);
   json["areas"] = Json::array();

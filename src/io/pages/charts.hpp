@@ -42,7 +42,6 @@ struct RoomPlan {
 struct MapChart {
   using Marker = RoomPlan::Marker;
   enum class Colours { scale, pass_or_fail };  ///< pass_or_fail: values are 1 or 0
-  enum class Signs { sensors, people };        ///< what markers are; people face nowhere
   struct Class {
     double above = 0.0;  ///< its values are greater, up to the next one's bound
     std::string name;
@@ -61,8 +60,8 @@ struct MapChart {
   std::vector<std::vector<Vec2>> dashed;  ///< closed polygons, drawn dashed: what was taken out
   std::vector<Vec2> ringed{};             ///< points with an orange ring
   std::string ringed_as{};                ///< what a ring means
-  std::vector<Marker> markers;
-  Signs signs = Signs::sensors;
+  std::vector<Marker> markers;            ///< sensors
+  std::vector<Marker> people{};           ///< who face nowhere; on pages
 };
 
 /// How often a count came out, over the runs, and the measured one as a line.

@@ -56,10 +56,11 @@
       taken.push(boxAt(...at, wide, high));
       placed.push({ x: at[0], y: at[1], label: sign.label, size });
     }
-    chart.markers.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 12, 12)));
+    const signs = [...chart.people, ...chart.markers];
+    signs.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 12, 12)));
     chart.seats.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 6, 6)));
     chart.areas.forEach((area) => place(area, 13, () => [0, -16, 16, -32, 32, -48, 48].map((down) => [0, down])));
-    chart.markers.forEach((marker) => place(marker, 11, (wide) => [[0, -14], [0, 15], [wide / 2 + 9, 0], [-wide / 2 - 9, 0],
+    signs.forEach((sign) => place(sign, 11, (wide) => [[0, -14], [0, 15], [wide / 2 + 9, 0], [-wide / 2 - 9, 0],
       [0, -26], [0, 27], [wide / 2, -20], [-wide / 2, -20], [wide / 2, 20], [-wide / 2, 20]]));
     // Where a seat's name has room: behind the back of whoever sits there.
     chart.seats.forEach((seat) => {
@@ -105,7 +106,7 @@
       data: [{ name: "squares", values: squares }, { name: "outline", values: points(chart.outline) },
         { name: "areas", values: points(chart.areas.flatMap(({ loops }) => loops)) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
-        { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
+        { name: "markers", values: chart.markers }, { name: "people", values: chart.people }, { name: "seats", values: chart.seats },
         { name: "ringed", values: chart.ringed },
         { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors },
         { name: "sweeps", values: points(chart.sweeps) }, ...wall.data],
@@ -137,11 +138,12 @@
         { type: "symbol", from: { data: "ringed" }, encode: { enter: Object.assign({ shape: { value: "circle" },
           size: { value: 260 }, stroke: { value: "#ff7f0e" }, strokeWidth: { value: 3 },
           tooltip: { field: "label" } }, at) } },
-        { type: "symbol", from: { data: "markers" }, encode: { enter: {
-          x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" },
-          shape: { value: chart.people ? "circle" : "triangle-up" }, size: { value: 110 }, angle: { field: "angle_deg" },
-          fill: { value: chart.people ? "#1f6feb" : "#ff4d6d" }, stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 },
-          tooltip: { field: "label" } } } },
+        { type: "symbol", from: { data: "markers" }, encode: { enter: Object.assign({ shape: { value: "triangle-up" },
+          size: { value: 110 }, angle: { field: "angle_deg" }, fill: { value: "#ff4d6d" }, stroke: { value: "#ffffff" },
+          strokeWidth: { value: 1.2 }, tooltip: { field: "label" } }, at) } },
+        { type: "symbol", from: { data: "people" }, encode: { enter: Object.assign({ shape: { value: "circle" },
+          size: { value: 110 }, fill: { value: "#1f6feb" }, stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 },
+          tooltip: { field: "label" } }, at) } },
         label("#000000", "#000000"), label("#ffffff", null),
       ],
     };

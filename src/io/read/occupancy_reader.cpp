@@ -29,6 +29,18 @@ std::optional<CsvTable> read_table(const std::string& file, const std::filesyste
   return std::nullopt;
 }
 
+/// `areas: {kitchen: people_kitchen}`; their numbers come with the table.
+void read_areas(YamlMap& map, CountsSpec& counts) {
+  const auto node = map.child("areas");
+  if (!node) return;
+  const std::vector<YamlKey> keys = node->keys();
+  const std::vector<YamlNode> columns = node->items();
+  if (keys.empty())
+    map.faults().error(node->where(), map.label("areas") + ": expected each area's column, {kitchen: people_kitchen}");
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    counts.areas.push_back({keys[i].name, columns[i].text(map.faults(), map.label("areas") + '.' + keys[i].name), {}});
+}
+
 }  // namespace
 
 namespace detail {
@@ -46,6 +58,7 @@ std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>
     counts.file = map.required_text("counts");
     counts.time = map.text("time");
     counts.column = map.text("people");
+    read_areas(map, counts);
     if (const auto table = read_table(counts.file, folder_, map.where("counts"), files_, found))
       read_counts(*table, counts, found);
   }

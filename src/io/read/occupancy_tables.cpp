@@ -57,14 +57,19 @@ class CountsReader {
   void read() {
     const TimeColumn time(table_, counts_.time, faults_);
     const auto column = find_people();
-    if (!time.is_found() || !column) return;
+    if (!time.is_found() || (!column && counts_.areas.empty())) return;
+    std::vector<std::size_t> of_areas;
+    for (const AreaCountsSpec& area : counts_.areas) {
+      if (const auto found = table_.required_column(area.column, faults_)) of_areas.push_back(*found);
+    }
+    if (of_areas.size() < counts_.areas.size()) return;
     require_one_run(table_, repeated_);
     for (std::size_t row = 0; row < table_.n_rows() && counts_.times_s.size() < limits::occupancy_rows; ++row) {
       Diagnostics found;
       const auto seconds = time.seconds(row, found);
-      const auto people = people_in(row, *column, found);
+      const auto reading = reading_in(row, column, of_areas, found);
       repeated_.add("time or number", found);
-      if (seconds && people) add(*seconds, *people, time.where(row), table_.where(row, *column));
+      if (seconds && reading) add(*seconds, *reading, time.where(row), table_.where(row, column.value_or(0)));
     }
     if (table_.n_rows() > limits::occupancy_rows)
       faults_.error(table_.header_place(), too_many(limits::occupancy_rows, "readings"));
@@ -83,6 +88,7 @@ class CountsReader {
     for (const char* name : {"people", "count", "occupancy", "Room_Occupancy_Count"}) {
       if (const auto column = table_.column(name)) return column;
     }
+    if (!counts_.areas.empty()) return std::nullopt;  // all are in areas
     std::string names;
     for (const std::string& name : table_.names()) names += (names.empty() ? "" : ", ") + name;
     faults_.error(table_.header_place(),
@@ -103,13 +109,40 @@ class CountsReader {
     return std::nullopt;
   }
 
-  void add(double seconds, int people, const Where& time, const Where& where) {
+  struct ReadCounts {
+    int people = 0;
+    std::vector<int> of_areas;
+    bool operator==(const ReadCounts&) const = default;
+  };
+  /// None where one of them isn't known.
+  std::optional<ReadCounts> reading_in(std::size_t row, const std::optional<std::size_t>& column,
+                                       const std::vector<std::size_t>& of_areas, Diagnostics& faults) const {
+    ReadCounts read;
+    for (const std::size_t area : of_areas) {
+      const auto people = people_in(row, area, faults);
+      if (!people) return std::nullopt;
+      read.of_areas.push_back(*people);
+      read.people += *people;
+    }
+    if (!column) return read;
+    const auto people = people_in(row, *column, faults);
+    if (!people) return std::nullopt;
+    if (*people >= read.people) return ReadCounts{*people, std::move(read.of_areas)};
+    faults.error(table_.where(row, *column), std::to_string(read.people) + " people are in areas, but only " +
+                                                 std::to_string(*people) + " in all");
+    return std::nullopt;
+  }
+
+  void add(double seconds, const ReadCounts& read, const Where& time, const Where& where) {
+    const int people = read.people;
     if (!counts_.times_s.empty()) {
-      if (seconds == counts_.times_s.back() && people == counts_.people.back()) return;
+      if (seconds == counts_.times_s.back() && read == last_) return;
       if (seconds == counts_.times_s.back()) {
         return repeated_.add("twice", where,
-                             "another number for the same time: " + std::to_string(people) + " after " +
-                                 std::to_string(counts_.people.back()));
+                             people == last_.people
+                                 ? "other numbers of areas for the same time"
+                                 : "another number for the same time: " + std::to_string(people) + " after " +
+                                       std::to_string(last_.people));
       }
       if (seconds < counts_.times_s.back())
         return repeated_.add("backwards", time, "time runs backwards: this row is earlier than the one before");
@@ -117,6 +150,8 @@ class CountsReader {
     if (counts_.people.empty() || people > most_) most_ = people, counts_.most = where;
     counts_.times_s.push_back(seconds);
     counts_.people.push_back(people);
+    for (std::size_t i = 0; i < read.of_areas.size(); ++i) counts_.areas[i].people.push_back(read.of_areas[i]);
+    last_ = read;
   }
 
   const CsvTable& table_;
@@ -124,6 +159,7 @@ class CountsReader {
   Diagnostics& faults_;
   RepeatedFaults repeated_;
   int most_ = 0;
+  ReadCounts last_;
 };
 
 }  // namespace

@@ -136,6 +136,9 @@ YAML::Node write(const OccupancySpec& occupancy) {
   node[occupancy.counts ? "counts" : occupancy.places ? "places" : "positions"] = file;
   if (occupancy.counts && !occupancy.counts->time.empty()) node["time"] = occupancy.counts->time;
   if (occupancy.counts && !occupancy.counts->column.empty()) node["people"] = occupancy.counts->column;
+  if (occupancy.counts) {
+    for (const AreaCountsSpec& area : occupancy.counts->areas) node["areas"][area.area] = area.column;
+  }
   if (occupancy.from_h) node["from"] = time_of_day(*occupancy.from_h);
   if (occupancy.to_h) node["to"] = time_of_day(*occupancy.to_h);
   write_numbers(occupancy, node);

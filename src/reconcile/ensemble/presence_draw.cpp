@@ -31,6 +31,7 @@ void draw_seats(const SceneSpec& scene, const NuisanceSpec& nuisance, Stream& st
   const std::vector<int>& people = occupancy.counts->people;
   const auto most = static_cast<std::size_t>(people.empty() ? 0 : std::max(1, *std::ranges::max_element(people)));
   const double share = nuisance.own_seats * stream.uniform();
+  if (!occupancy.counts->areas.empty()) return;  // which seats are spare differs from area to area
   if (seats.size() <= most || most == 0) return;
   const double spare = static_cast<double>(seats.size() - most);
   const auto unused = std::min(seats.size() - most, static_cast<std::size_t>(share * (spare + 1.0)));
@@ -47,7 +48,7 @@ CountsSpec with_other_times(const CountsSpec& counts, double within_s, Stream& s
   if (n < 3 || within_s <= 0.0) return moved;
   std::vector<Knot> knots{{0, 0.0}};
   for (std::size_t k = 1; k < n; ++k) {
-    if (counts.people[k] == counts.people[k - 1]) continue;
+    if (are_as_many(counts, k)) continue;
     const double later_s = within_s * (2.0 * stream.uniform() - 1.0);
     if (knots.back().place < k - 1) knots.push_back({k - 1, later_s});
     if (k + 1 < n) knots.push_back({k, later_s});

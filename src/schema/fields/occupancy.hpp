@@ -11,13 +11,22 @@
 namespace pirsim {
 
 template <>
+struct Fields<AreaCountsSpec> {
+  using S = AreaCountsSpec;
+  static constexpr const char* name = "AreaCounts";
+  static constexpr const char* about = "How many people were in one area, at the moments of `Counts.times_s`.";
+  static constexpr std::tuple all{FIELD(area, "its id"), FIELD(people, "at each moment"),
+                                  FIELD(column, "of `Counts.file`")};
+};
+template <>
 struct Fields<CountsSpec> {
   using S = CountsSpec;
   static constexpr const char* name = "Counts";
   static constexpr const char* about = "How many people were there, at moments.";
   static constexpr std::tuple all{
       FIELD(times_s, "ascending"),
-      FIELD(people, "at each of them"),
+      FIELD(people, "at each of them, in all"),
+      FIELD(areas, "counted by themselves; the rest of the people are elsewhere"),
       FIELD(begin, "local date and time of `times_s` 0; empty: they are seconds of the run"),
       FIELD(file, "CSV, or empty; relative to `Script.directory`; `read_script()` reads it"),
       FIELD(time, "its column of times; empty: found by its usual names"),

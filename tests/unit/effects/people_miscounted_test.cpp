@@ -50,6 +50,19 @@ TEST_CASE("One person more, or fewer, for a part of the time", "[effects]") {
   CHECK(none.trials.front().occupancy->counts.people == given.people);
 }
 
+TEST_CASE("One person more is in the fullest area", "[effects]") {
+  ScriptSpec script = counted();
+  CountsSpec& given = *script.trials.front().occupancy->counts;
+  given.areas = {{"living_room", "", std::vector<int>(given.people.size(), 0)}, {"bedroom", "", given.people}};
+  script.effects = {{"people_miscounted", {{"share", 0.5}, {"begin", 0.5}}, {{"there_was", "one_more_than_told"}}, {}}};
+  const CountsSpec counts =
+      effects::in_force(shipped_scene("two_rooms.gltf"), ScriptSpec(script)).trials.front().occupancy->counts;
+  for (std::size_t i = 0; i < counts.people.size(); ++i)
+    CHECK(counts.areas[0].people[i] + counts.areas[1].people[i] == counts.people[i]);
+  const auto at = std::ranges::find(counts.times_s, 1800.0) - counts.times_s.begin();
+  CHECK(counts.areas[1].people[static_cast<std::size_t>(at)] == 3);
+}
+
 TEST_CASE("Wrong counts are looked for where there are counts", "[effects]") {
   const auto has = [](const std::vector<const effects::Effect*>& all) {
     return std::ranges::any_of(all, [](const auto* effect) { return effect->info.name == "people_miscounted"; });

@@ -76,6 +76,23 @@ TEST_CASE("An occupancy is read, written and read again to the same") {
   CHECK(io::to_yaml(io::read_script(files.path() / "again.yaml")) == text);
 }
 
+TEST_CASE("Counts of areas are columns of the same file") {
+  const std::string keys = "counts: c.csv, areas: {kitchen: k, bath: b}";
+  const CountsSpec all = *occupancy_of("time,k,b\n0,1,0\n60,,1\n120,0,1\n120,0,1\n", keys).counts;
+  CHECK(all.times_s == std::vector{0.0, 120.0});
+  CHECK(all.people == std::vector{1, 1});
+  REQUIRE(all.areas.size() == 2);
+  CHECK((all.areas[0].area == "kitchen" && all.areas[0].people == std::vector{1, 0}));
+  CHECK((all.areas[1].area == "bath" && all.areas[1].people == std::vector{0, 1}));
+  // With a total, the rest is elsewhere.
+  CHECK(occupancy_of("time,people,k,b\n0,5,1,0\n9,1,1,0\n", keys).counts->people == std::vector{5, 1});
+  refused("time,people,k,b\n0,1,1,1\n", "c.csv:2:3: error: 2 people are in areas, but only 1 in all", keys);
+  refused("time,k\n0,1\n", "column 'b' is missing", keys);
+  refused("time,k,b\n0,1,0\n0,0,1\n", "c.csv:3:1: error: other numbers of areas for the same time", keys);
+  refused("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}", "counts: c.csv, areas: [k]");
+  refused("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}", "counts: c.csv, areas: {}");
+}
+
 TEST_CASE("What is wrong with counts is told with its line and column") {
   refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,-1\n", "c.csv:3:18: error: expected a number of people");
   refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,1.5\n", "c.csv:3:18: error: expected a number of people");

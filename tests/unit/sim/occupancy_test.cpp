@@ -36,11 +36,11 @@ Readings random_readings(int most, int n, double every_s, double changes, std::u
 }
 
 CountSource source_of(const Readings& readings, std::size_t people, std::size_t seats, std::size_t standing) {
-  CountSource source{.times_s = readings.times_s, .people = readings.people};
+  CountSource source{.times_s = readings.times_s, .people = {readings.people}};
   source.end_s = readings.times_s.back();
   source.n_people = people;
   source.n_seats = seats;
-  source.n_standing = standing;
+  source.part_of_place.assign(seats + standing, 0);
   return source;
 }
 
@@ -99,6 +99,59 @@ TEST_CASE("Drawn visits add up to every reading, and nobody is in two places") {
       // Nobody stands while a seat is free.
       if (visit.place >= 4) REQUIRE(n_there(visits, visit.comes_s) > 4);
     }
+  }
+}
+
+TEST_CASE("Drawn visits add up in every part of the floor, and who is missing in one has gone to another") {
+  constexpr std::size_t n_parts = 3, seats_each = 4;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    Readings parts[n_parts];
+    CountSource source;
+    int most = 0;
+    for (std::uint32_t part = 0; part < n_parts; ++part) {
+      parts[part] = random_readings(4, 200, 60.0, 0.4, 100 * seed + part);
+      source.people.push_back(parts[part].people);
+    }
+    source.times_s = parts[0].times_s;
+    source.end_s = source.times_s.back();
+    for (std::size_t i = 0; i < source.times_s.size(); ++i)
+      most = std::max(most, source.people[0][i] + source.people[1][i] + source.people[2][i]);
+    source.n_people = static_cast<std::size_t>(most);
+    source.n_seats = n_parts * seats_each;
+    for (std::size_t place = 0; place < source.n_seats; ++place) source.part_of_place.push_back(place % n_parts);
+    source.seed = seed;
+    const auto visits = draw_visits(source);
+    const auto in_part = [&](std::size_t part) {
+      auto own = visits;
+      std::erase_if(own, [&](const CountedVisit& visit) { return source.part_of_place[visit.place] != part; });
+      return own;
+    };
+    long moves = 0, wanted = 0;
+    for (std::size_t i = 0; i < source.times_s.size(); ++i) {
+      int more = 0, fewer = 0;
+      for (std::size_t part = 0; part < n_parts; ++part) {
+        REQUIRE(n_there(in_part(part), source.times_s[i]) == source.people[part][i]);
+        const int by = i == 0 ? 0 : source.people[part][i] - source.people[part][i - 1];
+        (by > 0 ? more : fewer) += std::abs(by);
+      }
+      wanted += std::min(more, fewer);
+    }
+    for (const CountedVisit& visit : visits) {
+      for (const CountedVisit& other : visits) {
+        if (&other == &visit || other.comes_s >= visit.goes_s || visit.comes_s >= other.goes_s) continue;
+        REQUIRE(other.person != visit.person);
+        REQUIRE(other.place != visit.place);
+      }
+      if (visit.goes_to != CountedVisit::Beyond::other_part) continue;
+      ++moves;
+      REQUIRE(std::ranges::count_if(visits, [&](const CountedVisit& next) {
+                return next.person == visit.person && next.comes_s == visit.goes_s &&
+                       next.comes_from == CountedVisit::Beyond::other_part &&
+                       source.part_of_place[next.place] != source.part_of_place[visit.place];
+              }) == 1);
+    }
+    CHECK(moves == wanted);
+    CHECK(moves > 20);
   }
 }
 
@@ -165,6 +218,41 @@ TEST_CASE("Everybody who is counted walks in and out in time: rooms, seats, and 
   // A twin: the same people a quarter of an hour later.
   const std::vector<int> late(walked.begin() + 900, walked.end());
   CHECK(n_wrong(readings, late) > 50);
+}
+
+TEST_CASE("Counts of areas are met in each of them", "[seconds]") {
+  // Two rooms, counted every minute; nobody knows the total but by adding up.
+  const Readings living = random_readings(2, 240, 60.0, 0.3, 1), bed = random_readings(1, 240, 60.0, 0.3, 2);
+  Readings all = living;
+  for (std::size_t i = 0; i < all.people.size(); ++i) all.people[i] += bed.people[i];
+  ScriptSpec script = script_with(all);
+  script.trials.front().occupancy->counts->areas = {{"living_room", "", living.people}, {"bedroom", "", bed.people}};
+  const Model model = compile(shipped_scene("two_rooms.gltf"), script);
+  REQUIRE(model.areas() == std::vector<std::string>{"living_room", "bedroom"});
+  RunState state(model.compiled(), 0);
+  std::vector<int> walked_living, walked_bed, walked;
+  while (!state.finished) {
+    if (!move_tick(model.compiled(), state)) continue;
+    walked.push_back(state.sample.people);
+    walked_living.push_back(state.sample.people_of_areas[0]);
+    walked_bed.push_back(state.sample.people_of_areas[1]);
+  }
+  CHECK(n_wrong(living, walked_living) <= 3);
+  CHECK(n_wrong(bed, walked_bed) <= 3);
+  CHECK(n_wrong(all, walked) <= 3);
+  // A twin: the other room's people.
+  CHECK(n_wrong(living, walked_bed) > 50);
+}
+
+TEST_CASE("More people than an area holds are told with what it holds") {
+  ScriptSpec script = script_with({{0.0, 600.0}, {90, 90}});
+  script.trials.front().occupancy->counts->areas = {{"bedroom", "", {90, 90}}};
+  CHECK_THROWS_WITH(compile(shipped_scene("two_rooms.gltf"), script),
+                    contains("90 people, but area 'bedroom' holds "));
+  script.trials.front().occupancy->counts->areas = {{"bedrom", "", {1, 1}}};
+  CHECK_THROWS_WITH(compile(shipped_scene("two_rooms.gltf"), script),
+                    contains("area 'bedrom' is not in") &&
+                        contains("bedroom"));
 }
 
 TEST_CASE("A reading every second is met but for a second or two at the door") {

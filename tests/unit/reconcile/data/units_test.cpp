@@ -98,6 +98,29 @@ TEST_CASE("Few people are told apart by their number, many by twice as many each
   CHECK(names(9) == std::set<std::string>{"8 to 15 people"});
 }
 
+TEST_CASE("Where areas are counted, who is where tells rows apart", "[units]") {
+  const auto names = [](const std::vector<int>& kitchen, const std::vector<int>& bath) {
+    AreaCountsSpec in_kitchen{"kitchen", "", {}}, in_bath{"bath", "", {}};
+    std::vector<int> all;
+    for (std::size_t i = 0; i < 20 * kitchen.size(); ++i) {  // twenty minutes each
+      in_kitchen.people.push_back(kitchen[i / 20]);
+      in_bath.people.push_back(bath[i / 20]);
+      all.push_back(kitchen[i / 20] + bath[i / 20]);
+    }
+    ScriptSpec script = script_with({all});
+    script.trials.front().occupancy->counts->areas = {in_kitchen, in_bath};
+    std::set<std::string> found;
+    for (const std::string& name : units_of(script).names) found.insert(name.substr(0, name.find(" from")));
+    found.erase("comings and goings");
+    return found;
+  };
+  // The same number of people all the time.
+  CHECK(names({1, 0, 1}, {0, 1, 0}) == std::set<std::string>{"1 in kitchen", "1 in bath"});
+  // More than eight numbers: in which of them anybody is.
+  CHECK(names({9, 8, 7, 6, 5, 4, 3, 2, 1, 0}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}) ==
+        std::set<std::string>{"people in kitchen", "people in kitchen, people in bath", "people in bath"});
+}
+
 TEST_CASE("Runs in units keep every row once, apart where they don't follow each other", "[units]") {
   SceneSpec scene;
   scene.sensors.resize(2);
