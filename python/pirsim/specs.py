@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from ._core import MeshSolid
 
 __all__ = [
-    "Action", "Activity", "Amplifier", "Appear", "Area", "Clock", "Cluster", "Comparator", "Counts", "Detector",
-    "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting",
-    "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places",
-    "Point2", "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script", "Seat",
-    "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial",
-    "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
+    "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Clock", "Cluster", "Comparator", "Counts",
+    "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
+    "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person",
+    "Place", "Places", "Point2", "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script",
+    "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track",
+    "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -585,13 +585,27 @@ class Schedule:
 
 
 @dataclass(slots=True)
+class AreaCounts:
+    """How many people were in one area, at the moments of `Counts.times_s`."""
+
+    area: str = ""
+    """Its id."""
+    people: list[int] = field(default_factory=list)
+    """At each moment."""
+    column: str = ""
+    """Of `Counts.file`."""
+
+
+@dataclass(slots=True)
 class Counts:
     """How many people were there, at moments."""
 
     times_s: list[float] = field(default_factory=list)
     """Ascending."""
     people: list[int] = field(default_factory=list)
-    """At each of them."""
+    """At each of them, in all."""
+    areas: list[AreaCounts] = field(default_factory=list)
+    """Counted by themselves; the rest of the people are elsewhere."""
     begin: str = ""
     """Local date and time of `times_s` 0; empty: they are seconds of the run."""
     file: str = ""
