@@ -19,13 +19,13 @@ struct AreaCountsSpec {
 };
 /// How many people were there, at moments.
 struct CountsSpec {
-  std::string file;             ///< CSV, or empty; relative to the script
-  std::string time, column;     ///< columns of the file; empty: found by their usual names
-  std::string begin;            ///< local date and time of times_s 0; empty: seconds of the run
-  std::vector<double> times_s;  ///< ascending
-  std::vector<int> people;      ///< (n_times) in all
+  std::string file;                     ///< CSV, or empty; relative to the script
+  std::string time, column;             ///< columns of the file; empty: found by their usual names
+  std::string begin;                    ///< local date and time of times_s 0; empty: seconds of the run
+  std::vector<double> times_s;          ///< ascending
+  std::vector<int> people;              ///< (n_times) in all
   std::vector<AreaCountsSpec> areas{};  ///< counted by themselves; the rest of the people are elsewhere
-  Where most;                   ///< where the greatest number stands
+  Where most;                           ///< where the greatest number stands
 };
 
 enum class AfterStay {

@@ -233,7 +233,8 @@ std::map<std::string, Table> tables(const Description& described) {
     for (const DescribedRoom& one : described.rooms) {
       const Areas areas(one.scene);
       for (const DoorSpec& door : one.scene.doors)
-        csv.write({one.number, door, area_beside(door, -1.0, one.scene, areas), area_beside(door, 1.0, one.scene, areas)});
+        csv.write(
+            {one.number, door, area_beside(door, -1.0, one.scene, areas), area_beside(door, 1.0, one.scene, areas)});
     }
   };
   const auto add_days = [&](auto& csv) {

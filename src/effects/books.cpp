@@ -166,7 +166,8 @@ double moment_of(const TrialInForce& trial, double share) {
   return trial.begins_s[static_cast<std::size_t>(run)] + (share * n - run) * duration_s;
 }
 
-/// Counts with `by` more people from one moment to another, in the fullest of counted areas (assumed). That it begins and ends there is a reading of its own.
+/// Counts with `by` more people from one moment to another, in the fullest of counted areas (assumed). That it begins
+/// and ends there is a reading of its own.
 void miscount(CountsSpec& counts, double from_s, double to_s, int by) {
   constexpr double apart_s = 1.0;
   CountsSpec changed = counts;

@@ -27,7 +27,7 @@ using SpecsOfPython =
                action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
                action::Leave, action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec,
                PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec,
-               HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec,
-               TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+               HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec,
+               OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

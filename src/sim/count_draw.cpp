@@ -124,8 +124,7 @@ class Draw {
   }
   /// Ends the visit of somebody there.
   CountedVisit& go_from(std::size_t from, double at_s, Stream& stream) {
-    const std::size_t who =
-        pick(present_, at_s, stream, [&](const Present& one) { return part_of(one) == from; });
+    const std::size_t who = pick(present_, at_s, stream, [&](const Present& one) { return part_of(one) == from; });
     CountedVisit& visit = visits_[present_[who].visit];
     visit.goes_s = at_s;
     free_[visit.place] = 1;

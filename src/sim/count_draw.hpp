@@ -9,8 +9,8 @@
 
 namespace pirsim::sim {
 
-/// Somebody is in a part of the floor from comes_s to goes_s, in seconds of the run; of who is there all along these lie
-/// before its beginning and beyond its end.
+/// Somebody is in a part of the floor from comes_s to goes_s, in seconds of the run; of who is there all along these
+/// lie before its beginning and beyond its end.
 struct CountedVisit {
   enum class Beyond { outside, other_part };
   static constexpr double from_the_beginning = -std::numeric_limits<double>::infinity();
@@ -23,12 +23,12 @@ struct CountedVisit {
 
 /// What visits are drawn from.
 struct CountSource {
-  std::span<const double> times_s;    ///< of the data, ascending
+  std::span<const double> times_s;         ///< of the data, ascending
   std::vector<std::vector<int>> people{};  ///< (n_parts x n_times) of each part of the floor that is counted by itself
-  double begin_s = 0.0, end_s = 0.0;  ///< of the run, in the seconds of the data
+  double begin_s = 0.0, end_s = 0.0;       ///< of the run, in the seconds of the data
   double changes_within_s = std::numeric_limits<double>::infinity();
-  std::size_t n_people = 0;  ///< who may come; at least the greatest number
-  std::size_t n_seats = 0;   ///< of the places, the first ones: they are taken before anybody stands
+  std::size_t n_people = 0;                  ///< who may come; at least the greatest number
+  std::size_t n_seats = 0;                   ///< of the places, the first ones: they are taken before anybody stands
   std::vector<std::size_t> part_of_place{};  ///< (n_places)
   std::uint64_t seed = 1;
   std::uint32_t run = 0;

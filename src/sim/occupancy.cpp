@@ -226,8 +226,8 @@ class Visits {
     std::vector<ScriptedAction>& actions = (*plan)[person];
     actions.push_back(untimed(action::Appear{stand_of(from, person), 0.0}));
     for (Action& action : taking(from, person)) actions.push_back(untimed(std::move(action)));
-    actions.push_back(untimed(places_.is_seat(from) ? Action(action::Work{until_next_s})
-                                                    : Action(action::Wait{until_next_s})));
+    actions.push_back(
+        untimed(places_.is_seat(from) ? Action(action::Work{until_next_s}) : Action(action::Wait{until_next_s})));
     const std::size_t first = actions.size();
     for (Action& action : taking(to, person)) actions.push_back(untimed(std::move(action)));
     actions[first].at_s = to_settle_s;
@@ -279,8 +279,8 @@ class Visits {
   const OccupancyInForce& occupancy_;
   CountedParts parts_;
   Places places_;
-  std::vector<std::size_t> occupants_;  ///< indices into the trial's people
-  std::vector<double> free_s_;          ///< (n_people) when the last visit so far was called off
+  std::vector<std::size_t> occupants_;             ///< indices into the trial's people
+  std::vector<double> free_s_;                     ///< (n_people) when the last visit so far was called off
   std::map<std::size_t, std::size_t> last_place_;  ///< of each person, so far
   std::map<std::tuple<std::size_t, std::uint32_t, std::size_t>, Crossings> crossings_;
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, double> moves_;

@@ -43,8 +43,9 @@ void AreaTally::add_run(const RunResult& result) {
 }
 
 io::Table AreaTally::table() const {
-  io::Table table{
-      {"area", "floor, m²", "minutes a run, of all people", "rows with people", "most people", "sensors", "rows with motion"}, {}};
+  io::Table table{{"area", "floor, m²", "minutes a run, of all people", "rows with people", "most people", "sensors",
+                   "rows with motion"},
+                  {}};
   for (std::size_t area = 0; area < sums_.size(); ++area) {
     const AreaSums& sums = sums_[area];
     const double minutes = static_cast<double>(sums.person_rows) * window_s_ / 60.0 / std::max(1, runs_);

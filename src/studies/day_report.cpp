@@ -29,7 +29,10 @@ std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ?
 }  // namespace
 
 DayReport::DayReport(const Model& model)
-    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window), areas_(model), watched_(Areas(model.scene()).of_sensors()) {
+    : model_(&model),
+      window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
+      areas_(model),
+      watched_(Areas(model.scene()).of_sensors()) {
   const Vec2 size = model.compiled().scene().floor.upper() - model.compiled().scene().floor.lower();
   columns_ = static_cast<std::size_t>(std::ceil(size.x / square_m));
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
@@ -264,7 +267,8 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   section.charts.emplace_back(count_chart());
   section.charts.emplace_back(floor_chart());
   section.paragraphs.push_back(
-      "In the map of the floor red triangles are sensors and white ones seats, pointing the way that the sensor, or who "
+      "In the map of the floor red triangles are sensors and white ones seats, pointing the way that the sensor, or "
+      "who "
       "sits there, faces; a green line is a door, "
       "dotted lines are furniture, black areas are walls" +
       std::string(areas_.empty() ? "" : ", violet dashes the borders of named areas") +

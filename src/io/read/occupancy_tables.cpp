@@ -128,8 +128,8 @@ class CountsReader {
     const auto people = people_in(row, *column, faults);
     if (!people) return std::nullopt;
     if (*people >= read.people) return ReadCounts{*people, std::move(read.of_areas)};
-    faults.error(table_.where(row, *column), std::to_string(read.people) + " people are in areas, but only " +
-                                                 std::to_string(*people) + " in all");
+    faults.error(table_.where(row, *column),
+                 std::to_string(read.people) + " people are in areas, but only " + std::to_string(*people) + " in all");
     return std::nullopt;
   }
 
@@ -139,10 +139,9 @@ class CountsReader {
       if (seconds == counts_.times_s.back() && read == last_) return;
       if (seconds == counts_.times_s.back()) {
         return repeated_.add("twice", where,
-                             people == last_.people
-                                 ? "other numbers of areas for the same time"
-                                 : "another number for the same time: " + std::to_string(people) + " after " +
-                                       std::to_string(last_.people));
+                             people == last_.people ? "other numbers of areas for the same time"
+                                                    : "another number for the same time: " + std::to_string(people) +
+                                                          " after " + std::to_string(last_.people));
       }
       if (seconds < counts_.times_s.back())
         return repeated_.add("backwards", time, "time runs backwards: this row is earlier than the one before");

@@ -154,8 +154,7 @@ std::vector<Part> parts_of(const std::map<std::string, std::vector<std::size_t>>
 
 std::string name_of(const Units& units, const Part& part, double window_s) {
   const std::size_t first = part.rows.front(), last = part.rows.back();
-  return part.state + " from " +
-         time_text(units, first / units.n_rows, first % units.n_rows, window_s) + " to " +
+  return part.state + " from " + time_text(units, first / units.n_rows, first % units.n_rows, window_s) + " to " +
          time_text(units, last / units.n_rows, last % units.n_rows + 1, window_s);
 }
 

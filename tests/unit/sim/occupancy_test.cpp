@@ -247,12 +247,10 @@ TEST_CASE("Counts of areas are met in each of them", "[seconds]") {
 TEST_CASE("More people than an area holds are told with what it holds") {
   ScriptSpec script = script_with({{0.0, 600.0}, {90, 90}});
   script.trials.front().occupancy->counts->areas = {{"bedroom", "", {90, 90}}};
-  CHECK_THROWS_WITH(compile(shipped_scene("two_rooms.gltf"), script),
-                    contains("90 people, but area 'bedroom' holds "));
+  CHECK_THROWS_WITH(compile(shipped_scene("two_rooms.gltf"), script), contains("90 people, but area 'bedroom' holds "));
   script.trials.front().occupancy->counts->areas = {{"bedrom", "", {1, 1}}};
   CHECK_THROWS_WITH(compile(shipped_scene("two_rooms.gltf"), script),
-                    contains("area 'bedrom' is not in") &&
-                        contains("bedroom"));
+                    contains("area 'bedrom' is not in") && contains("bedroom"));
 }
 
 TEST_CASE("A reading every second is met but for a second or two at the door") {
