@@ -10,14 +10,15 @@ if(TARGET pirsim_app)
 endif()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION "${PIRSIM_DATA_INSTALL_DIR}" COMPONENT command)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright COMPONENT command)
-# Of the font that pictures are lettered in; three.js has its own within each page.
-install(FILES "${PROJECT_SOURCE_DIR}/third_party/dejavu/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-  RENAME copyright.dejavu COMPONENT command)
+# What it carries of others, and their licences.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/third_party" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT command
+  FILES_MATCHING PATTERN licences.toml PATTERN "licences/*.txt" PATTERN LICENSE)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pirsim")
 install(EXPORT pirsimTargets NAMESPACE pirsim:: DESTINATION "${package_dir}" COMPONENT library)
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/pirsimConfig.cmake.in"
-  "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" INSTALL_DESTINATION "${package_dir}")
+  "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" INSTALL_DESTINATION "${package_dir}"
+  PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" "${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmake"
   DESTINATION "${package_dir}" COMPONENT library)

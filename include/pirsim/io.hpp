@@ -86,4 +86,28 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 /// Throws Error (io: no such file; input: all faults with file:line:column).
 [[nodiscard]] NuisanceSpec read_nuisance(const std::filesystem::path& file);
 
+// The data that comes with pirsim, found by name.
+
+/// Its kinds. Each is a folder of data/.
+enum class DataKind { rooms, studies, recipes, sensors, measured };
+/// "rooms".
+[[nodiscard]] std::string_view folder_of(DataKind kind);
+
+struct ShippedFile {
+  DataKind kind;
+  std::filesystem::path path;
+};
+
+/// Where it is looked for: `$PIRSIM_DATA_DIR`, then these folders, in which the kinds' folders lie.
+[[nodiscard]] std::vector<std::filesystem::path> data_folders(
+    std::span<const std::filesystem::path> data_directories = {});
+
+/// All of it, by kind and then by name. Of files with one name the first folder's counts.
+[[nodiscard]] std::vector<ShippedFile> shipped_files(std::span<const std::filesystem::path> data_directories = {});
+
+/// The file itself if it exists or its folder is named, else the shipped one of that kind and name. Throws Error(io),
+/// with the nearest name, if there is neither.
+[[nodiscard]] std::filesystem::path find_file(const std::filesystem::path& file, DataKind kind,
+                                              std::span<const std::filesystem::path> data_directories = {});
+
 }  // namespace pirsim::io

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Literal, NamedTuple
 
 from . import _core
-from ._study import Overrides, PathOr, as_overrides, as_path, as_scene, folders
+from ._study import Overrides, PathOr, as_file, as_overrides, as_path, as_scene, folders
 from .specs import Frame, Point3, Scene, Script, SensorModel
 
 
@@ -45,7 +45,7 @@ def read_scene(file: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None
 
 def read_script(file: PathOr, *, set: Overrides | None = None) -> Script:
     """Reads a script's YAML file, with trials and people written out. Raises FileError and InputError."""
-    return _core.read_script(as_path(file), as_overrides(set))
+    return _core.read_script(as_file(file, "studies"), as_overrides(set))
 
 
 def write_scene(scene: Scene, file: PathOr) -> None:
@@ -61,8 +61,9 @@ def write_script(script: Script, file: PathOr) -> None:
 
 def sensor_model(name: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None) -> SensorModel:
     """A sensor model by its name ("EKMC1604111"), or from a file (.yaml)."""
-    name = as_path(name)
-    return _core.read_sensor_model(name) if name.endswith(".yaml") else _core.find_sensor_model(name, *folders(sensors))
+    if (text := as_path(name)).endswith(".yaml"):
+        return _core.read_sensor_model(as_file(text, "sensors"))
+    return _core.find_sensor_model(text, *folders(sensors))
 
 
 def facing(position: Point3, heading_deg: float = 0.0, tilt_deg: float = 0.0) -> Frame:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Iterable, Literal, NamedTuple, Sequence, Union
 
 from . import _core
-from ._study import (Overrides, PathOr, Progress, _handle_of, Model, as_count, as_input, as_overrides, as_path, as_scene,
+from ._study import (Overrides, PathOr, Progress, _handle_of, Model, as_count, as_file, as_input, as_overrides, as_path, as_scene,
                      as_threads, folders)
 from .errors import Error, InputWarning
 from .specs import Diagnostic, Point3, Scene, Script, Sensor
@@ -101,7 +101,7 @@ def view(model: Model, run: int = 0, *, from_s: float | None = None, to_s: float
     on the floor. Raises as preview() does.
     """
     parts: dict[str, Any] = _core.page(_handle_of(model), _run_number(model, run), from_s, to_s, keys_per_s,
-                                       "" if coverage is None else as_path(coverage))
+                                       "" if coverage is None else as_file(coverage, "studies"))
     return Page(**parts)
 
 

@@ -25,7 +25,8 @@ Overrides = Union[Mapping[str, Any], Sequence[str]]
 EffectLike = Union[Effect, str, Mapping[str, Mapping[str, Any]]]
 
 data_directory: str = os.path.join(os.path.dirname(__file__), "data")
-"""Rooms, studies and sensors that come with pirsim, as data/ in its source."""
+"""Rooms, studies, recipes and sensors that come with pirsim, as data/ in its source. Where a function takes a file, the
+name of a shipped one will do: "meeting_room.gltf"."""
 
 
 class Poses(NamedTuple):
@@ -70,6 +71,12 @@ def as_path(path: PathOr) -> str:
     return name
 
 
+def as_file(path: PathOr, kind: str) -> str:
+    """A file's name, or where there is no such file that of the shipped one, of this kind ("rooms"). Raises
+    FileError, with the nearest name."""
+    return _core.find_file(as_path(path), kind, [data_directory])
+
+
 def as_threads(threads: int) -> int:
     """No more of them than cores will begin, whatever the number."""
     return as_count(threads, "threads", 0, 2**32 - 1)
@@ -108,14 +115,15 @@ def _plain(value: Any) -> Any:
 
 
 def as_input(value: Any, kind: type, set: Overrides | None = None) -> Any:
-    """A file's name as a text, or the object itself."""
-    if isinstance(value, kind):
+    """A file's name as a text, which may be a shipped one's, or the object itself. kind: Scene, Script, or str for the
+    file of a survey."""
+    if kind is not str and isinstance(value, kind):
         if set:
             raise TypeError(f"set changes files; change the pirsim.{kind.__name__} itself")
         return value
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"expected the name of a file or a pirsim.{kind.__name__}, got a {type(value).__name__}")
-    return as_path(value)
+    return as_file(value, "rooms" if kind is Scene else "studies")
 
 
 def as_scene(scene: Any, marks: PathOr | None) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, Iterable, NamedTuple
 
 from . import _core
 from ._result import Result
-from ._study import (Overrides, PathOr, Progress, as_count, as_input, as_overrides, as_path, as_seed, as_threads,
+from ._study import (Overrides, PathOr, Progress, as_count, as_file, as_input, as_overrides, as_path, as_seed, as_threads,
                      folders)
 from .errors import InputWarning
 from .specs import Effect, Scene, Script
@@ -25,7 +25,7 @@ def dataset(recipe: PathOr, folder: PathOr, *, set: Overrides | None = None, res
     the recipe, {"sensing.response": "zones"}. resume: keeps the days that are there already, as after Ctrl-C. progress is
     told in days of rooms.
     """
-    told = _core.dataset(as_path(recipe), as_path(folder), as_overrides(set), *folders(sensors), resume,
+    told = _core.dataset(as_file(recipe, "recipes"), as_path(folder), as_overrides(set), *folders(sensors), resume,
                          as_threads(threads), progress)
     for diagnostic in told:
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
@@ -33,7 +33,7 @@ def dataset(recipe: PathOr, folder: PathOr, *, set: Overrides | None = None, res
 
 def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
     """Room `number` (from 1) of a dataset's recipe: always the same for the same recipe."""
-    return _core.room(as_path(recipe), as_count(number, "number", -2**31, 2**31 - 1), *folders(sensors))
+    return _core.room(as_file(recipe, "recipes"), as_count(number, "number", -2**31, 2**31 - 1), *folders(sensors))
 
 
 class FittedEffect(NamedTuple):

@@ -29,6 +29,15 @@ nb::dict defaults() {
   return all;
 }
 
+std::string find_file(const std::string& file, const std::string& kind, const std::vector<std::string>& data) {
+  const std::vector<std::filesystem::path> folders(data.begin(), data.end());
+  for (const auto known : {io::DataKind::rooms, io::DataKind::studies, io::DataKind::recipes, io::DataKind::sensors,
+                           io::DataKind::measured}) {
+    if (io::folder_of(known) == kind) return io::find_file(file, known, folders).string();
+  }
+  throw nb::value_error("kind: not a folder of the data");
+}
+
 nb::list catalogue() {
   nb::list all;
   for (const effects::EffectInfo& info : effects::list()) {
@@ -81,6 +90,8 @@ void add_inputs(nb::module_& module) {
         return to_python(script_of(nb::cast(file), overrides));
       },
       nb::arg("file"), nb::arg("overrides"), "A pirsim.Script.");
+  module.def("find_file", &find_file, nb::arg("file"), nb::arg("kind"), nb::arg("data"),
+             "The file, or the shipped one of that name.");
   module.def(
       "read_sensor_model", [](const std::string& file) { return to_python(io::read_sensor_model(file)); },
       nb::arg("file"), "A pirsim.SensorModel.");

@@ -20,6 +20,7 @@ void add_control_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_effects_command(CLI::App& app);
+void add_data_command(CLI::App& app);
 void add_coverage_command(CLI::App& app);
 void add_walktest_command(CLI::App& app);
 void add_placements_command(CLI::App& app);
@@ -38,6 +39,6 @@ inline constexpr std::array all_commands{
     add_view_command,      add_room_command,     add_home_command,       add_dataset_command, add_effects_command,
     add_coverage_command,  add_walktest_command, add_placements_command, add_status_command,  add_merge_command,
     add_reconcile_command, add_log_command,      add_calibrate_command,  add_count_command,   add_control_command,
-    add_help_command};
+    add_data_command,      add_help_command};
 
 }  // namespace pirsim::app

@@ -41,7 +41,7 @@ control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue
     rule.lights.emplace_back();
     return rule;
   }
-  const SceneSpec scene = io::read_scene(options.inputs.scene, scene_options(options.inputs));
+  const SceneSpec scene = read_scene(options.inputs);
   const Areas areas(scene);
   if (areas.empty()) rule.lights.emplace_back();
   for (std::size_t area = 0; area < areas.size(); ++area) {

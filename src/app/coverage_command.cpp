@@ -21,8 +21,8 @@ struct CoverageOptions {
 };
 
 studies::CoverageStudy load_coverage(const Inputs& inputs) {
-  CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  CoverageSpec spec = io::read_coverage(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  SceneSpec scene = read_scene(inputs);
   tell(scene.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);
   studies::CoverageStudy study(std::move(scene), std::move(spec));

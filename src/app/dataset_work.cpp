@@ -72,7 +72,7 @@ void tell_what_is_missing(const DatasetWork& work, const dataset::RecipeSpec& re
 
 dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work) {
   const Progress progress({.what = "reading " + file.filename().string()}, work.inputs.verbosity);
-  return dataset::read_recipe(file, work.inputs.overrides);
+  return dataset::read_recipe(found(io::DataKind::recipes, file), work.inputs.overrides);
 }
 
 Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, const StopRequest& stop) {

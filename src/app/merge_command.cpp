@@ -25,7 +25,7 @@ struct MergeOptions {
 ScriptSpec script_of(const MergeOptions& options) {
   if (options.script.empty()) throw Error(ErrorCode::usage, "--summary needs --script FILE, that of the shards");
   const io::Provenance made = studies::campaign_provenance(options.folder);
-  ScriptSpec script = io::read_script(options.script, options.overrides);
+  ScriptSpec script = io::read_script(found(io::DataKind::studies, options.script), options.overrides);
   script.seed = made.seed;
   script.replicates = static_cast<int>(made.study_runs / script.trials.size());
   if (io::to_yaml(script) != made.resolved_script) {

@@ -25,7 +25,7 @@ PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const
                         const StopRequest& stop) {
   const auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
   Progress progress({"scoring sets of sensors", spec.sets.size() + n_tried, "sets"}, inputs.verbosity);
-  PlacementOptions options{threads, inputs.scene, scene_options(inputs)};
+  PlacementOptions options{threads, found(io::DataKind::rooms, inputs.scene), scene_options(inputs)};
   options.set_done = [&] {
     progress.finished();
     stop.throw_if_made();
@@ -45,8 +45,8 @@ void draw_maps(const studies::PlacementViews& views, const std::filesystem::path
 
 void placements(const Inputs& inputs, const PlacementsOptions& options) {
   check_outputs({{"-o", options.scene, {".gltf", ".glb"}}, {"--report", options.report, {".html"}}}, inputs);
-  const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
-  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const PlacementSpec spec = io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  const SceneSpec scene = read_scene(inputs);
   keep_inputs({{"-o", options.scene}, {"--report", options.report}}, files_read({}, scene));
   tell(scene.warnings, inputs.verbosity);
   std::optional<io::AtomicFile> report_file;

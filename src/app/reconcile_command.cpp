@@ -116,8 +116,8 @@ reconcile::Context context_of(const AnalysisOptions& options, AnalysisTeller& te
 }
 
 void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
-  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
-  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const ScriptSpec script = read_script(inputs);
+  const SceneSpec scene = read_scene(inputs);
   reconcile::SelftestSettings settings{settings_of(analysis, options.output, script),
                                        options.kind,
                                        options.runs,
@@ -141,8 +141,8 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
 }
 
 void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options) {
-  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
-  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const ScriptSpec script = read_script(inputs);
+  const SceneSpec scene = read_scene(inputs);
   reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
   require_writable(options.output);
   AnalysisTeller teller(inputs.verbosity);
@@ -164,8 +164,8 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
     throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
   if (options.measured == inputs.scene || options.measured == inputs.marks || options.measured == inputs.script)
     throw Error(ErrorCode::usage, "--measured can't be the same file or stream as --scene, --marks or --script");
-  const ScriptSpec given = io::read_script(inputs.script, inputs.overrides);
-  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const ScriptSpec given = read_script(inputs);
+  const SceneSpec scene = read_scene(inputs);
   tell(scene.warnings, inputs.verbosity);
   tell(given.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, given.sensing), inputs.verbosity);

@@ -10,7 +10,7 @@ namespace pirsim::app {
 namespace {
 
 void print_config(const Inputs& inputs) {
-  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  const ScriptSpec script = read_script(inputs);
   Diagnostics diagnostics;
   effects::check(script.effects, diagnostics);
   diagnostics.throw_if_errors();

@@ -83,8 +83,8 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   const fs::path& folder = options.output;
   const ChallengeFiles files{options.answer, folder, folder / "measured.csv", folder / "commitment.sha256"};
   check_files(files);
-  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
-  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const ScriptSpec script = read_script(inputs);
+  const SceneSpec scene = read_scene(inputs);
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   reconcile::SealSettings settings;

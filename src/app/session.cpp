@@ -61,10 +61,27 @@ io::SceneOptions scene_options(const Inputs& inputs) {
     if (!std::filesystem::is_directory(folder, unknown))
       throw Error(ErrorCode::io, Where{folder.string()}, "--sensors: there is no such folder");
   }
+  return {inputs.sensor_directories, data_directories(), inputs.marks};
+}
+
+std::vector<std::filesystem::path> data_directories() {
+  std::error_code unknown;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
-  // Installed (bin beside share), or in a build folder of the source tree (build/<preset>).
-  return {
-      inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}, inputs.marks};
+  // Installed (bin beside share), or in a build folder or the Python package (beside data).
+  return {(program / ".." / "share" / "pirsim").lexically_normal(), program / "data"};
+}
+
+std::filesystem::path found(io::DataKind kind, const std::filesystem::path& file) {
+  return io::find_file(file, kind, data_directories());
+}
+
+SceneSpec read_scene(const Inputs& inputs) {
+  const std::filesystem::path file = found(io::DataKind::rooms, inputs.scene);
+  return io::read_scene(file, scene_options(inputs));
+}
+
+ScriptSpec read_script(const Inputs& inputs) {
+  return io::read_script(found(io::DataKind::studies, inputs.script), inputs.overrides);
 }
 
 namespace {
@@ -72,7 +89,7 @@ namespace {
 Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   const TracerKind tracer = tracer_kind(inputs.tracer);
   const Progress progress({.what = "reading and compiling " + inputs.scene.filename().string()}, of_progress);
-  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  SceneSpec scene = read_scene(inputs);
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   Model model = compile(std::move(scene), std::move(script), {tracer});
@@ -93,7 +110,7 @@ Model load(const Inputs& inputs, Verbosity of_progress) {
   if (inputs.script.empty()) return compiled(inputs, of_progress, io::parse_script(nobody, "", inputs.overrides));
   ScriptSpec script = [&] {
     const Progress progress({.what = "reading " + inputs.script.filename().string()}, of_progress);
-    return io::read_script(inputs.script, inputs.overrides);
+    return read_script(inputs);
   }();
   return compiled(inputs, of_progress, std::move(script));
 }
@@ -165,7 +182,8 @@ void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs
   std::map<std::string, std::string> taken;
   for (const auto& [option, file] :
        {std::pair("--scene", inputs.scene), std::pair("--marks", inputs.marks), std::pair("--script", inputs.script)}) {
-    if (!file.empty()) taken.emplace(identity(file), option);
+    std::error_code unknown;  // a shipped file isn't in the working folder, whatever its name
+    if (fs::exists(file, unknown)) taken.emplace(identity(file), option);
   }
   for (const NamedOutput& output : outputs) {
     if (output.file.empty()) continue;

@@ -31,6 +31,13 @@ namespace pirsim::app {
 /// Where a scene's sensors are looked for: what the user names, and last the data that came with this program. Throws
 /// Error(io) if the user names what isn't a folder.
 [[nodiscard]] io::SceneOptions scene_options(const Inputs& inputs);
+/// Where the data that came with this program may lie.
+[[nodiscard]] std::vector<std::filesystem::path> data_directories();
+/// The file, or else the shipped one of that name. Throws Error(io), with the nearest name, if there is neither.
+[[nodiscard]] std::filesystem::path found(io::DataKind kind, const std::filesystem::path& file);
+/// Of --scene and --script, which may name shipped files. Throw as io::read_scene() and io::read_script().
+[[nodiscard]] SceneSpec read_scene(const Inputs& inputs);
+[[nodiscard]] ScriptSpec read_script(const Inputs& inputs);
 /// Of --nuisance: a file, "none", or "" for the usual one.
 [[nodiscard]] NuisanceSpec nuisance_of(const std::string& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);

@@ -46,7 +46,7 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   request.scene = io::name_of_input(inputs.scene);
   request.script = io::name_of_input(inputs.script);
   if (!options.coverage.empty()) {
-    request.coverage = io::read_coverage(options.coverage);
+    request.coverage = io::read_coverage(found(io::DataKind::studies, options.coverage));
     const studies::CoverageStudy study(model.compiled().scene(), *request.coverage);
     tell(study.warnings(), inputs.verbosity);
     tell_what_is_left_out(study, inputs.verbosity);

@@ -20,8 +20,8 @@ struct WalkTestOptions {
 
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   check_outputs({{"-o", options.output, {".csv"}}, {"--report", options.report, {".html"}}}, inputs);
-  WalkTestSpec spec = io::read_walk_test(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  WalkTestSpec spec = io::read_walk_test(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  SceneSpec scene = read_scene(inputs);
   keep_inputs({{"-o", options.output}, {"--report", options.report}}, files_read({}, scene));
   tell(scene.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 
 #include "schema/body_part_names.hpp"
@@ -126,7 +127,7 @@ double Humanoid::half_width_m() const noexcept {
 double Humanoid::trunk_radius_m() const noexcept {
   const Vec3& torso = std::get<Box>(primitives_[at(Part::torso)]).half_extents;
   const auto& pelvis = std::get<Capsule>(primitives_[at(Part::pelvis)]);
-  return std::max(std::hypot(torso.x, torso.z), pelvis.half_length + pelvis.radius);
+  return std::max(glm::length(Vec2(torso.x, torso.z)), pelvis.half_length + pelvis.radius);
 }
 
 double Humanoid::trunk_height_m() const noexcept { return torso_top * measures_.stature_m - measures_.hip_height_m; }

@@ -1,6 +1,7 @@
 #include "core/parallel.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -45,7 +46,10 @@ class Loop {
 
   /// Waits until there is room for one more result; false if none is to be begun.
   bool begin_next(std::unique_lock<std::mutex>& lock) {
-    changed_.wait(lock, [&] { return ended_ || next_ == count_ || next_ - consumed_ < slots_.size(); });
+    const auto may_go_on = [&] { return ended_ || next_ == count_ || next_ - consumed_ < slots_.size(); };
+    // GCC 12's wait() asks for a newer libstdc++ than systems with glibc 2.34 have; wait_for() doesn't.
+    while (!changed_.wait_for(lock, std::chrono::minutes(1), may_go_on)) {
+    }
     if (ended_ || next_ == count_) return false;
     try {
       if (!goes_on_ || goes_on_()) return true;

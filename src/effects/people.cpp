@@ -172,12 +172,14 @@ Effect seat_shift() {
 
 // seat_scatter: nobody sits on the point that is drawn.
 
+double added(double sd, double more) { return std::sqrt(sd * sd + more * more); }
+
 void alter_seat_scatter(StudyInForce& study, const EffectSpec& effect) {
   for (TrialInForce& trial : study.trials) {
     for (PersonInForce& person : trial.people) {
       SeatScatterSpec& scatter = person.seat_scatter;
-      scatter.position_sd_m = std::hypot(scatter.position_sd_m, effect.parameters.at("position_sd_m"));
-      scatter.heading_sd_deg = std::hypot(scatter.heading_sd_deg, effect.parameters.at("heading_sd_deg"));
+      scatter.position_sd_m = added(scatter.position_sd_m, effect.parameters.at("position_sd_m"));
+      scatter.heading_sd_deg = added(scatter.heading_sd_deg, effect.parameters.at("heading_sd_deg"));
     }
   }
 }

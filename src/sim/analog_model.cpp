@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <set>
 #include <utility>
 
@@ -30,7 +31,7 @@ const PowerModel::Lens& PowerModel::lens(const SensorModelSpec& model, const Sen
   if (known) return *known;
   Lens lens{model, sensing.analog_rays_per_zone, {}};
   // Two blurs in a row are one of their root sum of squares.
-  lens.model.optics.blur_deg = std::hypot(model.optics.blur_deg, sensing.soft_edges.sigma_deg);
+  lens.model.optics.blur_deg = glm::length(Vec2(model.optics.blur_deg, sensing.soft_edges.sigma_deg));
   if (like != nullptr) {
     const auto other = like->lenses_.find(model.id);
     if (other != like->lenses_.end() && other->second->rays_per_zone == lens.rays_per_zone &&

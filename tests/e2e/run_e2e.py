@@ -50,7 +50,7 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
             ("reconcile", "selftest"): ("studyA.yaml",),
             ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
 OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
-          ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
+          ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",), ("data",): (),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
           ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("--log", "nowhere.csv"),

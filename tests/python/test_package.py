@@ -51,6 +51,27 @@ def test_version_and_data():
     assert (pathlib.Path(pirsim.data_directory) / "sensors" / "EKMC1604111.yaml").is_file()
 
 
+def test_shipped_files_are_found_by_name(data, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    model = pirsim.compile("meeting_room.gltf", "studyA.yaml")
+    assert model.scene.seats == pirsim.read_scene(data / "rooms/meeting_room.gltf").seats
+    assert pirsim.read_script("studyA.yaml").name == model.script.name
+    assert pirsim.coverage("meeting_room.gltf", "studyB.yaml", set={"spacing_m": 1}).sensors == model.sensors.names
+    assert pirsim.sensor_model("EKMC1604111.yaml") == pirsim.sensor_model("EKMC1604111")
+    assert pirsim.room("tiny.yaml", 1).sensors
+    with pytest.raises(pirsim.FileError, match="shipped rooms .did you mean 'meeting_room.gltf'"):
+        pirsim.compile("meeting_rom.gltf", "studyA.yaml")
+    (tmp_path / "studyA.yaml").write_text("pirsim_script: 2")
+    with pytest.raises(pirsim.InputError, match="^studyA.yaml:1:"):  # a file that is there wins
+        pirsim.read_script("studyA.yaml")
+
+
+def test_the_command_is_the_program_in_the_package():
+    done = subprocess.run([sys.executable, "-m", "pirsim", "data", "studyA.yaml"], capture_output=True, text=True)
+    assert done.returncode == 0 and pathlib.Path(done.stdout.strip()).name == "studyA.yaml", done.stderr
+    assert subprocess.run([sys.executable, "-m", "pirsim", "help", "nothing"], capture_output=True).returncode == 2
+
+
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy isn't installed")
 def test_types_are_right(source, tmp_path):
     program = tmp_path / "typed.py"

@@ -112,7 +112,7 @@ class Mask {
       if (share <= 0.0) return;
       for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
-          result.cover(x + dx, y + dy, share * std::clamp(radius_px + 0.5 - std::hypot(dx, dy), 0.0, 1.0));
+          result.cover(x + dx, y + dy, share * std::clamp(radius_px + 0.5 - std::sqrt(dx * dx + dy * dy), 0.0, 1.0));
         }
       }
     });

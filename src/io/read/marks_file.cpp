@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
@@ -113,7 +114,7 @@ struct Heading {
   double yaw_deg = 0.0, tilt_deg = 0.0;
 };
 Heading heading_of(const Vec3& direction) {
-  const double aside = std::hypot(direction.x, direction.z);
+  const double aside = glm::length(Vec2(direction.x, direction.z));
   const double yaw = aside > 1e-9 * std::abs(direction.y) ? std::atan2(-direction.x, -direction.z) : 0.0;
   return {degrees(yaw), degrees(std::atan2(-direction.y, aside))};
 }

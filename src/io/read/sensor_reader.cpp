@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <set>
 
 #include "core/text.hpp"
@@ -333,10 +332,7 @@ SensorSearch::SensorSearch(const SceneOptions& options, const fs::path& scene_fo
   folders_.push_back(scene_folder / "sensors");
   folders_.push_back(scene_folder / ".." / "sensors");
   if (!options.marks.empty()) folders_.push_back(folder_of_input(options.marks) / "sensors");
-  if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
-    folders_.push_back(fs::path(data) / "sensors");
-  }
-  for (const fs::path& data : options.data_directories) folders_.push_back(data / "sensors");
+  for (const fs::path& data : data_folders(options.data_directories)) folders_.push_back(data / "sensors");
 }
 
 std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {

@@ -122,7 +122,7 @@ double cycle_strength(std::span<const std::uint8_t> bits, double cycle_rows) {
     imaginary += std::sin(angle);
     count += 1.0;
   }
-  return count > 0.0 ? std::hypot(real, imaginary) / count : 0.0;
+  return count > 0.0 ? std::sqrt(real * real + imaginary * imaginary) / count : 0.0;
 }
 
 double agreement(const BitSeries& series) {

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""The shipped rooms, studies, recipes and sensors are found by name, wherever pirsim stands.
+
+Usage: run_shipped.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PIRSIM = DATA = None
+KINDS = {"rooms": ".gltf", "studies": ".yaml", "recipes": ".yaml", "sensors": ".yaml", "measured": ".csv"}
+SHORT = "--replicates", "1", "--set", "trials.for_each.seat=[S8]", "-q"
+
+
+def pirsim(*args, code=0, cwd=None, program=None, data=""):
+    result = subprocess.run([program or PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300, cwd=cwd,
+                            env={**os.environ, "PIRSIM_DATA_DIR": str(data)})
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result.stdout if code == 0 else result.stderr
+
+
+def names_of(listing):
+    """{"rooms": {"flat.gltf", ...}}, of what `pirsim data` prints."""
+    names, kind = {}, None
+    for line in filter(None, listing.splitlines()):
+        if line.startswith("  "):
+            names[kind].add(line.strip())
+        else:
+            kind = pathlib.Path(line).name
+            names.setdefault(kind, set())
+    return names
+
+
+class Shipped(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def test_the_list_is_that_of_the_folders(self):
+        there = {kind: {file.name for file in (DATA / kind).iterdir() if file.suffix == ending and
+                        file.name != "ekmc1604111_zones.csv"} for kind, ending in KINDS.items()}
+        self.assertEqual(names_of(pirsim("data", cwd=self.folder)), there)
+        for kind, names in there.items():
+            for name in names:
+                path = pathlib.Path(pirsim("data", name, cwd=self.folder).strip())
+                self.assertEqual(path.read_bytes(), (DATA / kind / name).read_bytes())
+        self.assertIn("did you mean 'studyA.yaml'?", pirsim("data", "StudyA.yaml", code=2))
+
+    def test_a_name_gives_the_rows_of_the_file(self):
+        by_name = pirsim("--scene", "meeting_room.gltf", "--script", "studyA.yaml", *SHORT, cwd=self.folder)
+        self.assertEqual(by_name, pirsim("--scene", DATA / "rooms/meeting_room.gltf", "--script",
+                                         DATA / "studies/studyA.yaml", *SHORT, cwd=self.folder))
+        self.assertGreater(by_name.count("\n"), 180)  # a second each
+
+    def test_every_command_that_reads_a_kind_takes_its_names(self):
+        study = "--scene", "meeting_room.gltf", "--script", "studyA.yaml"
+        for args in (("check", *study, "-q"), ("run", *study, "--print-config"), ("preview", *study, "-o", "a.png", "-q"),
+                     ("view", *study, "--to", "5", "--coverage", "studyB.yaml", "-o", "run.html", "-q"),
+                     ("coverage", *study[:3], "studyB.yaml", "--set", "spacing_m=1", "-o", "maps", "-q"),
+                     ("walktest", *study[:3], "walk_test.yaml", "--set", "spacing_m=2", "-o", "walk.csv", "-q"),
+                     ("room", "tiny.yaml", "-o", "room.gltf", "-q"),
+                     ("run", *study, *SHORT, "-o", "rows.csv"), ("control", "rows.csv", *study, "-q")):
+            pirsim(*args, cwd=self.folder)
+        self.assertIn("--measured", pirsim("reconcile", *study, code=2))
+
+    def test_a_file_that_is_there_wins(self):
+        (self.folder / "meeting_room.gltf").write_text("{")
+        told = pirsim("check", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", code=3, cwd=self.folder)
+        self.assertTrue(told.startswith("meeting_room.gltf:1:"), told)
+
+    def test_a_folder_is_meant_as_it_is_given(self):
+        told = pirsim("check", "--scene", "./meeting_room.gltf", "--script", "studyA.yaml", code=4, cwd=self.folder)
+        self.assertEqual(told, "./meeting_room.gltf: error: no such file\n")
+
+    def test_an_output_may_be_called_as_a_shipped_file_is(self):
+        pirsim("export", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", "-o", "meeting_room.gltf", "-q",
+               cwd=self.folder)
+        self.assertTrue((self.folder / "meeting_room.gltf").exists())
+
+    def test_what_is_neither_is_told_with_the_nearest_name(self):
+        for args, told in ((("check", "--scene", "meeting_rom.gltf", "--script", "studyA.yaml"),
+                            "meeting_rom.gltf: error: no such file, nor one among the shipped rooms (did you mean "
+                            "'meeting_room.gltf'?)\n"),
+                           (("check", "--scene", "meeting_room.gltf", "--script", "studya.yaml"),
+                            "studya.yaml: error: no such file, nor one among the shipped studies (did you mean "
+                            "'studyA.yaml'?)\n"),
+                           (("dataset", "tinny.yaml", "-o", "out"),
+                            "tinny.yaml: error: no such file, nor one among the shipped recipes (did you mean "
+                            "'tiny.yaml'?)\n")):
+            self.assertEqual(pirsim(*args, code=4, cwd=self.folder), told)
+
+    def test_a_folder_of_one_s_own_comes_first(self):
+        own = self.folder / "own"
+        (own / "studies").mkdir(parents=True)
+        (own / "studies" / "studyA.yaml").write_text("pirsim_script: 2\n")
+        (own / "studies" / "mine.yaml").write_text((DATA / "studies/studyB.yaml").read_text())
+        listed = pirsim("data", data=own)
+        self.assertEqual(names_of(listed)["studies"], names_of(pirsim("data"))["studies"] | {"mine.yaml"})
+        self.assertEqual(pirsim("data", "studyA.yaml", data=own), f"{own}/studies/studyA.yaml\n")
+        self.assertIn(f"{own}/studies/studyA.yaml:1:", pirsim("check", "--scene", "meeting_room.gltf", "--script",
+                                                              "studyA.yaml", code=3, data=own))
+
+    def test_an_installation_that_is_moved_finds_its_own(self):
+        for program, data in (("usr/bin/pirsim", "usr/share/pirsim"), ("package/pirsim", "package/data")):
+            (self.folder / program).parent.mkdir(parents=True)
+            shutil.copy(PIRSIM, self.folder / program)
+            alone = pirsim("data", code=4, program=self.folder / program)
+            self.assertIn("the data that comes with pirsim isn't in '", alone)
+            shutil.copytree(DATA, self.folder / data)
+            self.assertEqual(pirsim("data", "flat.gltf", program=self.folder / program).strip(),
+                             str(self.folder / data / "rooms/flat.gltf"))
+
+
+if __name__ == "__main__":
+    PIRSIM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=["run_shipped.py", *sys.argv[3:]], verbosity=2)
