@@ -46,7 +46,8 @@ void tell_path(const std::string& name) {
 }  // namespace
 
 void add_data_command(CLI::App& app) {
-  CLI::App& command = add_command(app, "data", "list the rooms, studies, recipes and sensors that come with pirsim", R"x(
+  CLI::App& command =
+      add_command(app, "data", "list the rooms, studies, recipes and sensors that come with pirsim", R"x(
   pirsim data                                                      where they are, and their names
   pirsim check --scene meeting_room.gltf --script studyA.yaml      a shipped name will do for a file that isn't here
   cp "$(pirsim data studyA.yaml)" .                                one to begin with
