@@ -23,14 +23,14 @@ from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
 from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
-from .specs import (Action, Amplifier, Appear, Area, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Door,
+from .specs import (Action, Amplifier, Appear, Area, AreaCounts, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Door,
                     Effect, Element, Enter, Entrance, Floor, Follow, Frame, HeldMeeting, Household, InputFile, Leave,
                     Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions, Profile, Resident, Rise,
                     Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stand, Stay,
                     Summary, Track, Trial, Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Area", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts",
+    "Action", "Amplifier", "Appear", "Area", "AreaCounts", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts",
     "CoverageMap", "Detector", "Diagnostic", "Door", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter",
     "Entrance", "Error", "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame",
     "Grid", "HeldMeeting", "Household", "Incident", "IncompleteWarning", "InfeasibleError", "InputError",

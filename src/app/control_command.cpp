@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "io/files/compression.hpp"
 #include "io/pages/report.hpp"
 #include "pirsim/control.hpp"
+#include "pirsim/look.hpp"
 #include "pirsim/version.hpp"
 #include "schema/areas.hpp"
 
@@ -67,6 +69,34 @@ control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& rem
     if (!options.delays_min.empty()) light.delays_min = options.delays_min;
   }
   return rule;
+}
+
+/// Seats where none of a light's sensors notices somebody at work: there it goes off whatever the delay.
+void remark_deaf_seats(const ControlOptions& options, const control::RuleSpec& rule, std::vector<Issue>& remarks) {
+  if (options.inputs.scene.empty() || options.inputs.script.empty()) return;
+  const Model model = load(options.inputs, Verbosity::quiet);
+  const SceneSpec& scene = model.scene();
+  const Areas areas(scene);
+  const WorkReport work = check_study(model).work;
+  for (const control::LightSpec& light : rule.lights) {
+    std::vector<std::string> unnoticed;
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
+      const SeatSpec& place = *std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);
+      if (!light.area.empty() && areas.name_at(floor_point(place.world_from_seat.origin)) != light.area) continue;
+      bool is_noticed = false;
+      for (std::size_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
+        const bool switches = light.sensors.empty() ||
+                              std::ranges::find(light.sensors, scene.sensors[sensor].id) != light.sensors.end();
+        is_noticed = is_noticed || (switches && work.notice(seat, sensor).seconds > 0);
+      }
+      if (!is_noticed) unnoticed.push_back(place.id);
+    }
+    if (unnoticed.empty()) continue;
+    remarks.push_back({Severity::warning,
+                       {scene.name},
+                       "light '" + light.id + "': none of its sensors notices somebody at work in " +
+                           joined(unnoticed, ", ") + ", so it goes off there at any delay; `pirsim check` says why"});
+  }
 }
 
 /// What rows are made into, as they come.
@@ -134,6 +164,7 @@ template <typename Source>
 void control_rows(const ControlOptions& options, const Source& source) {
   std::vector<Issue> remarks;
   const control::RuleSpec rule = rule_of(options, remarks);
+  remark_deaf_seats(options, rule, remarks);
   Outputs outputs(options, rule, source.about());
   {
     const Progress progress({"switching light"}, options.inputs.verbosity);
@@ -212,7 +243,7 @@ void add_control_command(CLI::App& app) {
   offer_input_file(command, "--scene", inputs.scene, "without a rule: a light for each of its areas; .gltf or .glb");
   offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
   offer_input_file(command, "--script", inputs.script,
-                   "with --scene: what made the rows, for links to the worst moments");
+                   "with --scene: what made the rows, for links to the worst moments and seats that no sensor notices");
   command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);

@@ -334,6 +334,16 @@ class Light(unittest.TestCase):
             self.assertEqual([row["people_" + light] for row in lit], [row["people_" + light] for row in given])
         self.assertIn("living_room", (self.folder / "light.html").read_text())
 
+    def test_seats_that_no_sensor_notices_are_told(self):
+        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
+        made_by = "--scene", DATA / "rooms" / "two_rooms.gltf", "--script", DATA / "studies" / "two_rooms.yaml"
+        deaf = pirsim("control", self.folder / "rows.csv", *made_by)
+        told = "light 'living_room': none of its sensors notices somebody at work in S1, so it goes off there at any delay"
+        seen = pirsim("check", *made_by).stdout
+        self.assertEqual(told in deaf.stderr, "noticed in none" in seen, deaf.stderr + seen)
+        self.assertNotIn("'bedroom'", deaf.stderr)
+        self.assertNotIn("notices somebody", pirsim("control", self.folder / "rows.csv", *made_by[:2]).stderr)
+
     def test_a_dataset_and_a_log_have_days(self):
         for room in (1, 2):
             for day in (1, 2, 3):
