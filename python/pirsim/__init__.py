@@ -23,24 +23,25 @@ from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
 from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
-from .specs import (Action, Amplifier, Appear, Area, AreaCounts, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Door,
-                    Effect, Element, Enter, Entrance, Floor, Follow, Frame, HeldMeeting, Household, InputFile, Leave,
-                    Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions, Profile, Resident, Rise,
-                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stand, Stay,
-                    Summary, Track, Trial, Turn, Wait, Walk, Warmth, Where, Work, Zone)
+from .specs import (Action, Amplifier, Appear, Area, AreaCounts, Clock, Cluster, Comparator, Counts, Detector,
+                    Diagnostic, Door, Effect, Element, Enter, Entrance, Floor, Follow, Frame, HeldMeeting, Household,
+                    InputFile, Leave, Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions, Profile,
+                    Resident, Rise, Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit,
+                    Staff, Stand, Stay, Summary, Track, Trial, Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Area", "AreaCounts", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts",
-    "CoverageMap", "Detector", "Diagnostic", "Door", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter",
-    "Entrance", "Error", "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame",
-    "Grid", "HeldMeeting", "Household", "Incident", "IncompleteWarning", "InfeasibleError", "InputError",
-    "InputFile", "InputWarning", "InternalError", "Leave", "Lie", "LightCosts", "Log", "LogLengths", "LogPair",
-    "LogSensor", "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "Place",
-    "PlacementScore", "Placements", "Places", "Poses", "Positions", "Profile", "Rays", "Reconciliation",
-    "Resident", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor",
-    "SensorModel", "SensorSight", "Sit", "Staff", "Stand", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
-    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
-    "control", "counting", "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing",
-    "git_revision", "placements", "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run",
-    "sensor_model", "specs", "trace", "view", "walk_test", "write_scene", "write_script",
+    "Action", "Amplifier", "Appear", "Area", "AreaCounts", "Candidate", "Cell", "Clock", "Cluster",
+    "Comparator", "Counts", "CoverageMap", "Detector", "Diagnostic", "Door", "Effect", "EffectInfo",
+    "EffectParameter", "Element", "Enter", "Entrance", "Error", "ErrorCode", "Fault", "FileError", "Findings",
+    "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting", "Household", "Incident",
+    "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
+    "Lie", "LightCosts", "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy",
+    "Optics", "Page", "Person", "Picture", "Place", "PlacementScore", "Placements", "Places", "Poses",
+    "Positions", "Profile", "Rays", "Reconciliation", "Resident", "Result", "Rise", "Scene", "Schedule",
+    "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stand",
+    "Stay", "Summary", "Trace", "Track", "Trial", "Turn", "UsageError", "Wait", "Walk", "WalkTest", "Warmth",
+    "Where", "Work", "Zone", "__version__", "check", "compile", "control", "counting", "coverage",
+    "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
+    "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs",
+    "trace", "view", "walk_test", "write_scene", "write_script",
 ]

@@ -90,7 +90,7 @@ def _make(client: Any, work: _Work, missing: Iterable[int], folder: pathlib.Path
     futures = client.map(functools.partial(_shard, work), list(missing), pure=False)
     there = work.shards - len(futures)
     try:
-        for future in as_completed(futures):
+        for future in as_completed(futures):  # type: ignore[no-untyped-call,unused-ignore]
             for name, content in future.result().items():
                 _put(folder / name, content)
             future.release()
@@ -135,9 +135,9 @@ def _call(work: _Work, arguments: list[str]) -> None:
 
 
 def _error(code: int, message: str, file: str = "") -> Error:
-    diagnostics = [] if file else [Diagnostic(found["severity"], found["file"] or "", int(found["line"] or 0),
-                                              int(found["column"] or 0), found["text"])
-                                   for found in _DIAGNOSTIC.finditer(message)]
+    diagnostics = [Diagnostic("warning" if found["severity"] == "warning" else "error", found["file"] or "",
+                              int(found["line"] or 0), int(found["column"] or 0), found["text"])
+                   for found in _DIAGNOSTIC.finditer(message)]
     kinds = {ErrorCode.USAGE: UsageError, ErrorCode.INPUT: InputError, ErrorCode.IO: FileError,
              ErrorCode.INFEASIBLE: InfeasibleError}
     known = ErrorCode(code) if code in list(ErrorCode) else ErrorCode.INTERNAL
