@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Types the README's section "Try it" in one shell, from tools/demo to the rows. The demo is the real one, but what it
+"""Types the README's section "Build it" in one shell, from tools/demo to the rows. The demo is the real one, but what it
 would install and build is there already: PIRSIM stands in build/release, and cmake, tools/install_deps and tools/check
 do nothing.
 
@@ -38,7 +38,8 @@ def clone(folder, pirsim, source):
 
 def main():
     pirsim, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    section = [block for block in blocks(source / "README.md") if block.line < first_line_after_try_it(source)]
+    begin, end = lines_of_section(source, "## Build it")
+    section = [block for block in blocks(source / "README.md") if begin < block.line < end]
     typed = "".join(block.text for block in section if block.language == "sh")
     [expected] = [block.text for block in section if block.info == "output"]
     with tempfile.TemporaryDirectory() as name:
@@ -59,10 +60,10 @@ def main():
     print(f"the README's first commands: {len(told)} files of tools/demo, and the rows")
 
 
-def first_line_after_try_it(source):
+def lines_of_section(source, heading):
     lines = (source / "README.md").read_text(encoding="utf-8").splitlines()
-    begin = lines.index("## Try it")
-    return begin + 1 + next(i for i, line in enumerate(lines[begin + 1:], start=1) if line.startswith("## "))
+    begin = lines.index(heading)
+    return begin + 1, begin + 1 + next(i for i, line in enumerate(lines[begin + 1:], start=1) if line.startswith("## "))
 
 
 if __name__ == "__main__":
