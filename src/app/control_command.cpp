@@ -71,7 +71,7 @@ control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& rem
   return rule;
 }
 
-/// Seats where none of a light's sensors notices somebody at work: there it goes off whatever the delay.
+/// Seats where none of a light's sensors notices somebody at work: who is alone there sits in the dark at any delay.
 void remark_deaf_seats(const ControlOptions& options, const control::RuleSpec& rule, std::vector<Issue>& remarks) {
   if (options.inputs.scene.empty() || options.inputs.script.empty()) return;
   const Model model = load(options.inputs, Verbosity::quiet);
@@ -85,8 +85,8 @@ void remark_deaf_seats(const ControlOptions& options, const control::RuleSpec& r
       if (!light.area.empty() && areas.name_at(floor_point(place.world_from_seat.origin)) != light.area) continue;
       bool is_noticed = false;
       for (std::size_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
-        const bool switches = light.sensors.empty() ||
-                              std::ranges::find(light.sensors, scene.sensors[sensor].id) != light.sensors.end();
+        const bool switches =
+            light.sensors.empty() || std::ranges::find(light.sensors, scene.sensors[sensor].id) != light.sensors.end();
         is_noticed = is_noticed || (switches && work.notice(seat, sensor).seconds > 0);
       }
       if (!is_noticed) unnoticed.push_back(place.id);
@@ -95,7 +95,8 @@ void remark_deaf_seats(const ControlOptions& options, const control::RuleSpec& r
     remarks.push_back({Severity::warning,
                        {scene.name},
                        "light '" + light.id + "': none of its sensors notices somebody at work in " +
-                           joined(unnoticed, ", ") + ", so it goes off there at any delay; `pirsim check` says why"});
+                           joined(unnoticed, ", ") +
+                           ": who is alone there sits in the dark at any delay; `pirsim check` says why"});
   }
 }
 

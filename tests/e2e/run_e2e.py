@@ -338,7 +338,7 @@ class Light(unittest.TestCase):
         study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf", "--script", DATA / "studies" / "two_rooms.yaml"
         deaf = pirsim("control", self.folder / "rows.csv", *made_by)
-        told = "light 'living_room': none of its sensors notices somebody at work in S1, so it goes off there at any delay"
+        told = "light 'living_room': none of its sensors notices somebody at work in S1: who is alone there sits in the dark"
         seen = pirsim("check", *made_by).stdout
         self.assertEqual(told in deaf.stderr, "noticed in none" in seen, deaf.stderr + seen)
         self.assertNotIn("'bedroom'", deaf.stderr)

@@ -51,7 +51,8 @@ Cover covers_of(const SensorModelSpec& lens, const Desk& desk, double above_m, d
           const Vec2 off = (lens.plane_m / above_m) * (points[k] - Vec2(i * step_m, j * step_m));
           const Vec2 seen = across ? Vec2(off.y, -off.x) : off;
           const bool in_zone = std::ranges::any_of(lens.clusters, [&](const ClusterSpec& cluster) {
-            return std::ranges::any_of(cluster.zones, [&](const ZoneSpec& zone) { return is_inside(seen, zone.corners); });
+            return std::ranges::any_of(cluster.zones,
+                                       [&](const ZoneSpec& zone) { return is_inside(seen, zone.corners); });
           });
           if (in_zone) covered.push_back(static_cast<std::uint32_t>(k));
         }
