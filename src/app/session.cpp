@@ -180,10 +180,14 @@ const std::vector<std::string>& summary_endings() {
 
 void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs) {
   std::map<std::string, std::string> taken;
-  for (const auto& [option, file] :
-       {std::pair("--scene", inputs.scene), std::pair("--marks", inputs.marks), std::pair("--script", inputs.script)}) {
-    std::error_code unknown;  // a shipped file isn't in the working folder, whatever its name
-    if (fs::exists(file, unknown)) taken.emplace(identity(file), option);
+  // A shipped file isn't in the working folder, whatever its name.
+  const auto here = [](const fs::path& file) {
+    std::error_code unknown;
+    return fs::exists(file, unknown) ? file : fs::path();
+  };
+  for (const auto& [option, file] : {std::pair("--scene", here(inputs.scene)), std::pair("--marks", inputs.marks),
+                                     std::pair("--script", here(inputs.script))}) {
+    if (!file.empty()) taken.emplace(identity(file), option);
   }
   for (const NamedOutput& output : outputs) {
     if (output.file.empty()) continue;
