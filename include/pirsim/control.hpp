@@ -54,6 +54,7 @@ struct LightSpec {
   std::optional<TogetherSpec> together;  ///< none: any one of them
   std::vector<double> delays_min{10.0};  ///< the first is what lit times and the worst moments are told of
   std::optional<ManualSpec> manual;      ///< none: motion switches it on
+  std::optional<double> wave_s;          ///< who is in the dark has brought it back so long after; none: nobody does
   Timer timer = Timer::restarts;
   double least_on_min = 0.0;         ///< it is never lit for less
   std::string door;                  ///< motion while it is shut keeps the light on until it opens; empty: none

@@ -15,6 +15,7 @@ SwitchRule::SwitchRule(const LightSpec& light, double window_s)
       timer(light.timer),
       has_door(!light.door.empty()) {
   settle_rows = std::llround(settle_s / window_s);
+  if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
   if (!light.manual) return;
   switch_rows = std::llround(light.manual->switch_s / window_s);
   grace_rows = std::llround(light.manual->grace_s / window_s);
@@ -27,7 +28,10 @@ void LightSwitch::go_on() noexcept {
 }
 
 bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
-  if (!rule.switch_rows) return cue.moved;
+  if (!rule.switch_rows) {
+    waits_ = cue.occupied && rule.wave_rows ? waits_ + 1 : 0;
+    return cue.moved || (rule.wave_rows && waits_ > *rule.wave_rows);
+  }
   if (cue.moved && was_lit_ && row_ - since_ <= rule.grace_rows) return true;
   waits_ = cue.occupied ? waits_ + 1 : 0;
   return waits_ > *rule.switch_rows;

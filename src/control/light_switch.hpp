@@ -19,6 +19,7 @@ struct SwitchRule {
   SwitchRule(const LightSpec& light, double window_s);
 
   std::optional<std::int64_t> switch_rows{};  ///< none: motion switches it on
+  std::optional<std::int64_t> wave_rows{};    ///< in the dark, until who is there has waved; none: nobody waves
   std::int64_t grace_rows = 0, least_on_rows = 0;
   std::int64_t settle_rows = 0;  ///< after its door was shut, motion may still be of who went out
   Timer timer = Timer::restarts;
@@ -30,6 +31,11 @@ class LightSwitch {
  public:
   /// The next row. delay_rows: as it is then. It is lit so many rows beyond the one with the last motion.
   void advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows);
+  /// So many rows in the dark with nobody there, no motion and the door shut: as advance() with each.
+  void rest(std::int64_t n_rows) noexcept {
+    row_ += n_rows;
+    waits_ = 0;
+  }
   [[nodiscard]] bool is_lit() const noexcept { return lit_; }
 
  private:
@@ -42,7 +48,7 @@ class LightSwitch {
   std::int64_t open_at_ = 0;       ///< the last row in which its door was open
   std::int64_t since_ = 0;         ///< lit since this row, or dark
   std::int64_t counted_from_ = 0;  ///< of the delay
-  std::int64_t waits_ = 0;         ///< rows in which somebody was in the dark without having used the switch
+  std::int64_t waits_ = 0;         ///< rows in which somebody was in the dark without having used the switch, or waved
   bool was_lit_ = false;           ///< ever
 };
 

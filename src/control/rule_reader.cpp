@@ -49,6 +49,9 @@ LightSpec read_light(const io::YamlNode& node, std::size_t index, Diagnostics& f
     manual.switch_s = own.number("switch_s", manual.switch_s, reaction_s);
     manual.grace_s = own.number("grace_s", manual.grace_s, reaction_s);
   });
+  if (map.child("wave_s")) light.wave_s = map.number("wave_s", 0.0, reaction_s);
+  if (light.wave_s && light.manual)
+    faults.error(map.where("wave_s"), "wave_s: with `manual`, who is in the dark uses the switch instead");
   light.timer = map.choice<Timer>("timer", light.timer, {{"restarts", Timer::restarts}, {"runs_out", Timer::runs_out}});
   light.least_on_min = map.number("least_on_min", light.least_on_min, delay_min);
   light.door = map.text("door");

@@ -54,6 +54,11 @@ TEST_CASE("light by hand: on with motion, off when the delay is over, and what p
   CHECK(lit({}, 3.0, "0100000010", "1111111111") == "0111100011");
   CHECK(lit({}, 0.0, "0110000010", "1111111111") == "0110000010");
   CHECK(lit({}, 3.0, "0110000000", "1111111111") == "0111110000");  // every motion starts it anew
+  LightSpec waved;
+  waved.wave_s = 120.0;  // after two rows in the dark somebody brings it back, motion does so at once
+  CHECK(lit(waved, 1.0, "1000000000", "1111111111") == "1100011000");
+  CHECK(lit(waved, 1.0, "1001000000", "1111000011") == "1101100000");
+  CHECK(lit(waved, 1.0, "0000000000", "1111110111") == "0011000001");
   Control control(rule_with({}, {3.0}), one_sensor, minute_s);
   const std::string motion = "0100000010", people = "0111111100";
   for (int i = 0; i < 10; ++i)
