@@ -20,7 +20,7 @@ BELOW = {
     "io": {"effects", "schema", "geom", "core"},
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "schema", "geom", "core"},
-    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "studies": {"control", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
     "control": {"io", "schema", "geom", "core"},

@@ -139,6 +139,21 @@ struct CheckReport {
 /// What `pirsim check` tells of a study, without running it.
 [[nodiscard]] CheckReport check_study(const Model& model);
 
+/// What becomes of the light of an area, or of all areas together.
+struct PlacementLight {
+  std::string area{};                  ///< empty: all, or a scene without areas
+  std::vector<std::string> sensors{};  ///< that switch it; none: it is counted as if a sensor saw nobody
+  double occupied_h = 0.0;
+  std::int64_t false_offs = 0;  ///< it went off while somebody was there
+  double dark_h = 0.0;          ///< while somebody was there
+  double lit_empty_h = 0.0;     ///< while nobody was there
+  [[nodiscard]] double false_offs_an_hour() const noexcept {
+    return occupied_h > 0.0 ? static_cast<double>(false_offs) / occupied_h : 0.0;
+  }
+  [[nodiscard]] double dark_share() const noexcept { return occupied_h > 0.0 ? dark_h / occupied_h : 0.0; }
+  bool operator==(const PlacementLight&) const = default;
+};
+
 /// How one set of sensors does. The target stands still at a square or seat as in a coverage study.
 struct PlacementScore {
   SensorSetSpec set;
@@ -148,6 +163,8 @@ struct PlacementScore {
   std::vector<std::string> blind_seats;  ///< where no sensor sees the target
   SeatsAtWork at_work{};                 ///< of somebody of natural style who types
   std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
+  PlacementLight light{};                ///< by `false_off`: of all areas together
+  std::vector<PlacementLight> areas{};   ///< by `false_off`: of each area that has people
 };
 
 struct PlacementSearch {

@@ -72,14 +72,23 @@ struct PlacementSearchSpec {
 
 /// What sets are ranked by, and what a search looks for.
 enum class PlacementAim {
-  area,   ///< floor where the target is noticed
-  seats,  ///< seats where somebody at work is noticed; among equals, surely noticed ones, then area
+  area,       ///< floor where the target is noticed
+  seats,      ///< seats where somebody at work is noticed; among equals, surely noticed ones, then area
+  false_off,  ///< how seldom light goes off on somebody; among equals, least time in the dark, then least empty light
+};
+
+/// Whose light `false_off` is about: each area of the scene has one, switched by the sensors that watch it.
+struct PlacementLightSpec {
+  ScriptSpec people;        ///< whose days are simulated
+  double delay_min = 10.0;  ///< from the last motion until it goes off
+  double wave_s = 10.0;     ///< who is in the dark has brought it back so long after (`assumed`; 0 to 60 tried)
 };
 
 struct PlacementSpec {
   CoverageSpec coverage;  ///< by which sets are judged
   PlacementAim by = PlacementAim::area;
-  Where by_where{};  ///< for messages
+  Where by_where{};                         ///< for messages
+  std::optional<PlacementLightSpec> light;  ///< by `false_off` there is one
   std::vector<SensorSetSpec> sets;
   std::optional<PlacementSearchSpec> search;
   std::map<std::string, Where> models;  ///< of sensors: where each is named first, for messages
@@ -97,16 +106,40 @@ struct WalkRequirement {
   int directions = 8;  ///< tries: evenly round the circle
 };
 
+/// In which plane an arm swings.
+enum class ArmSwing { horizontal, vertical };
+
+/// A box that turns about its end, there and back, and then rests: horizontally half of its swing to either side of
+/// where it points, vertically upwards from there.
+struct SwingingArmSpec {
+  double length_m = 0.381;   ///< 15 in
+  double width_m = 0.0762;   ///< 3 in, both ways across
+  double height_m = 0.9144;  ///< 36 in, of its axis over the floor
+  double swing_deg = 90.0;
+  double deg_per_s = 90.0;
+  double temperature_c = 33.5;  ///< for the analog response (`assumed`: as skin; 28 to 36.9 tried)
+  std::vector<ArmSwing> swings{ArmSwing::horizontal, ArmSwing::vertical};  ///< each in every direction
+};
+
+/// A standard whose terms the outputs speak.
+enum class WalkStandard {
+  nema_wd7,  ///< NEMA WD 7, occupancy motion sensors: cells, major and minor motion, coverage area
+};
+
 struct WalkTestSpec {
   std::string name;
+  std::optional<WalkStandard> standard{};  ///< after which the test is made
   SensingSpec sensing;
   double spacing_m = 0.5;
   PersonSpec person;
   /// A person crosses the point, starting to walk half of `path_m` before it.
   WalkRequirement major;
   double path_m = 2.0;
-  /// A person who sits over the point moves both forearms to and fro.
+  /// If given, motion counts until the person has stood at the end of the path for so long, whatever `major.within_s`.
+  std::optional<double> stop_s{};
+  /// A person who sits over the point moves both forearms to and fro; or, if there is one, an arm over it swings.
   WalkRequirement minor{10.0, 0.9, 8};
+  std::optional<SwingingArmSpec> arm{};
   double seat_height_m = 0.531;  ///< of the pelvis
   double desk_height_m = 0.74;   ///< on which the forearms move; the desk itself hides nothing
   double arm_amplitude_m = 0.1;
@@ -114,5 +147,8 @@ struct WalkTestSpec {
   std::uint64_t seed = 1;           ///< of what effects draw; every try draws by itself
   std::vector<EffectSpec> effects;  ///< as in a script
 };
+
+/// The test that is made after a standard: docs/formats/coverage.md says what was read of it, and what is assumed.
+[[nodiscard]] WalkTestSpec walk_test_after(WalkStandard standard);
 
 }  // namespace pirsim

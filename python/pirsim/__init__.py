@@ -15,7 +15,7 @@ from ._control import LightCosts, control
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
                       write_scene, write_script)
 from ._log import Log, LogLengths, LogPair, LogSensor, read_log
-from ._look import (Findings, Page, Picture, Placements, PlacementScore, SensorSight, check, export, placements, preview,
+from ._look import (Findings, Page, Picture, PlacementLight, Placements, PlacementScore, SensorSight, check, export, placements, preview,
                     view)
 from ._result import Fault, Incident, Result
 from ._study import Model, Poses, Rays, Trace, compile, data_directory, run, trace
@@ -36,7 +36,7 @@ __all__ = [
     "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting", "Household", "Incident",
     "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
     "Lie", "LightCosts", "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy",
-    "Optics", "Page", "Person", "Picture", "Place", "PlacementScore", "Placements", "Places", "Poses",
+    "Optics", "Page", "Person", "Picture", "Place", "PlacementLight", "PlacementScore", "Placements", "Places", "Poses",
     "Positions", "Profile", "Rays", "Reconciliation", "Resident", "Result", "Rise", "Scene", "Schedule",
     "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stand",
     "Stay", "Summary", "Trace", "Track", "Trial", "Turn", "UsageError", "Wait", "Walk", "WalkTest", "Warmth",

@@ -168,6 +168,18 @@ def check(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | No
                     parts["places"], parts["places_seen_by_any"], parts["text"])
 
 
+class PlacementLight(NamedTuple):
+    """What becomes of light that a set of sensors switches, of all areas together."""
+
+    occupied_h: float
+    false_offs: int
+    """How often it went off while somebody was there."""
+    dark_h: float
+    """While somebody was there."""
+    lit_empty_h: float
+    """While nobody was there."""
+
+
 class PlacementScore(NamedTuple):
     """How one set of sensors does."""
 
@@ -184,6 +196,10 @@ class PlacementScore(NamedTuple):
     deaf_seats: tuple[str, ...]
     """Where sensors see somebody at work, and none ever reports motion."""
     unseen_seats: tuple[str, ...]
+    surely_seats: tuple[str, ...]
+    """Of `noticed_seats`: where a sensor reports motion in ten seconds or more."""
+    light: PlacementLight | None
+    """If the study has `light`."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -191,7 +207,7 @@ class Placements:
     """Sets of sensors, ranked. `print()` tells all."""
 
     ranked: list[PlacementScore]
-    """Greatest seen area first; with a search, its even and its best places are among them."""
+    """Best first, by what the study ranks by; with a search, its even and its best places are among them."""
     evaluations: int
     """Sets that the search tried; 0: there was none."""
     text: str
@@ -214,5 +230,6 @@ def placements(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None =
                                              *folders(sensors), as_threads(threads), progress)
     for diagnostic in parts.pop("warnings"):
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
-    parts["ranked"] = [PlacementScore(*score) for score in parts["ranked"]]
+    parts["ranked"] = [PlacementScore(*score, None if light is None else PlacementLight(*light))
+                       for *score, light in parts["ranked"]]
     return Placements(**parts)

@@ -92,10 +92,16 @@ nb::dict placements(nb::handle scene, const std::string& script, const std::vect
   });
   nb::list ranked;
   for (const PlacementScore& score : report.ranked) {
+    nb::object light = nb::none();
+    if (spec.light) {
+      light =
+          nb::make_tuple(score.light.occupied_h, score.light.false_offs, score.light.dark_h, score.light.lit_empty_h);
+    }
     ranked.append(nb::make_tuple(to_python(score.set.id), to_python(score.set.sensors), score.seen_area_m2,
                                  score.blind_fraction, score.overlap, nb::tuple(to_python(score.blind_seats)),
                                  nb::tuple(to_python(score.at_work.noticed)), nb::tuple(to_python(score.at_work.deaf)),
-                                 nb::tuple(to_python(score.at_work.unseen))));
+                                 nb::tuple(to_python(score.at_work.unseen)), nb::tuple(to_python(score.at_work.surely)),
+                                 light));
   }
   std::vector<Issue> told = room.warnings;
   told.insert(told.end(), report.warnings.begin(), report.warnings.end());

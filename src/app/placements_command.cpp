@@ -47,7 +47,8 @@ void placements(const Inputs& inputs, const PlacementsOptions& options) {
   check_outputs({{"-o", options.scene, {".gltf", ".glb"}}, {"--report", options.report, {".html"}}}, inputs);
   const PlacementSpec spec = io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides);
   const SceneSpec scene = read_scene(inputs);
-  keep_inputs({{"-o", options.scene}, {"--report", options.report}}, files_read({}, scene));
+  keep_inputs({{"-o", options.scene}, {"--report", options.report}},
+              files_read(spec.light ? spec.light->people : ScriptSpec{}, scene));
   tell(scene.warnings, inputs.verbosity);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
@@ -73,6 +74,7 @@ void add_placements_command(CLI::App& app) {
   pirsim placements --scene room.gltf --script placements.yaml
   pirsim placements --scene room.gltf --script placements.yaml --set by=seats -o better.gltf --report sets.html
   pirsim placements --scene room.gltf --script placements.yaml --set search.evaluations=2000
+  pirsim placements --scene room.gltf --script light.yaml --set light.delay_min=5 --report sets.html
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<PlacementsOptions>();

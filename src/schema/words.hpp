@@ -49,7 +49,16 @@ struct Words<Response> {
 };
 template <>
 struct Words<PlacementAim> {
-  static constexpr WordList<PlacementAim, 2> all{{{"area", PlacementAim::area}, {"seats", PlacementAim::seats}}};
+  static constexpr WordList<PlacementAim, 3> all{
+      {{"area", PlacementAim::area}, {"seats", PlacementAim::seats}, {"false_off", PlacementAim::false_off}}};
+};
+template <>
+struct Words<ArmSwing> {
+  static constexpr WordList<ArmSwing, 2> all{{{"horizontal", ArmSwing::horizontal}, {"vertical", ArmSwing::vertical}}};
+};
+template <>
+struct Words<WalkStandard> {
+  static constexpr WordList<WalkStandard, 1> all{{{"nema-wd7", WalkStandard::nema_wd7}}};
 };
 template <>
 struct Words<PulseSigns> {

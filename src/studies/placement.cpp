@@ -1,14 +1,13 @@
 #include "studies/placement.hpp"
 
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "core/grouped_warnings.hpp"
-#include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/response.hpp"
+#include "studies/light_rows.hpp"
 #include "studies/placement_search.hpp"
 #include "studies/sight.hpp"
 
@@ -40,8 +39,6 @@ std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::
   }
   return idle;
 }
-
-std::string listed(const std::vector<std::string>& names) { return names.empty() ? "none" : joined(names, " "); }
 
 }  // namespace
 
@@ -99,6 +96,12 @@ std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorA
 
 std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, PlacementAim by) {
   std::ranges::stable_sort(scores, [by](const PlacementScore& a, const PlacementScore& b) {
+    if (by == PlacementAim::false_off) {
+      const auto cost = [](const PlacementLight& light) {
+        return std::tie(light.false_offs, light.dark_h, light.lit_empty_h);
+      };
+      if (cost(a.light) != cost(b.light)) return cost(a.light) < cost(b.light);
+    }
     const SeatsAtWork &at_a = a.at_work, &at_b = b.at_work;
     if (by == PlacementAim::seats) {
       if (at_a.noticed.size() != at_b.noticed.size()) return at_a.noticed.size() > at_b.noticed.size();
@@ -108,59 +111,6 @@ std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, Placement
     return a.blind_seats.size() < b.blind_seats.size();
   });
   return scores;
-}
-
-std::string to_text(const std::vector<PlacementScore>& scores, PlacementAim by) {
-  std::ostringstream out;
-  out << (by == PlacementAim::seats
-              ? "ranked by seats where somebody at work is noticed, then surely noticed, then by seen area\n"
-              : "ranked by seen area\n")
-      << "                                       seats at work\n"
-         "  rank  seen, m2  blind, %  overlap, %  noticed  surely  deaf  unseen  set (blind seats; deaf to work in)\n"
-      << std::fixed;
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const PlacementScore& s = scores[i];
-    out << std::setw(6) << i + 1 << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1)
-        << std::setw(10) << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << std::setw(9)
-        << s.at_work.noticed.size() << std::setw(8) << s.at_work.surely.size() << std::setw(6) << s.at_work.deaf.size()
-        << std::setw(8) << s.at_work.unseen.size() << "  " << s.set.id << " (" << listed(s.blind_seats) << "; "
-        << listed(s.at_work.deaf) << ")\n";
-  }
-  return out.str();
-}
-
-namespace {
-
-/// "17.23 m2 found, 1.20 m2 more than even spacing (16.03 m2)"
-std::string gain_by_area(const PlacementSearch& search) {
-  const double found = search.found.seen_area_m2, even = search.even.seen_area_m2;
-  return fixed(found, 2) + " m2 found, " + fixed(found - even, 2) + " m2 more than even spacing (" + fixed(even, 2) +
-         " m2)";
-}
-
-/// "38 seats noticed, 30 surely, 41.00 m2 seen; with even spacing 24, 12 surely, 39.00 m2"
-std::string gain_by_seats(const PlacementSearch& search) {
-  const auto told = [](const PlacementScore& score, const std::string& noticed, const std::string& seen) {
-    return std::to_string(score.at_work.noticed.size()) + noticed + ", " + std::to_string(score.at_work.surely.size()) +
-           " surely, " + fixed(score.seen_area_m2, 2) + " m2" + seen;
-  };
-  return told(search.found, " seats noticed", " seen") + "; with even spacing " + told(search.even, "", "");
-}
-
-}  // namespace
-
-std::string to_text(const PlacementSearch& search, PlacementAim by) {
-  std::ostringstream out;
-  out << search.evaluations
-      << (by == PlacementAim::seats ? " places tried: " + gain_by_seats(search)
-                                    : " sets tried: " + gain_by_area(search))
-      << (search.gained ? "" : "; the search found nothing better than even spacing") << ". Sensors at:\n"
-      << std::fixed << std::setprecision(2);
-  for (const SensorSpec& sensor : search.found.set.sensors) {
-    const Vec3 p = sensor.world_from_sensor.origin;
-    out << "  " << sensor.id << "  " << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  }
-  return out.str();
 }
 
 }  // namespace pirsim::studies
@@ -195,6 +145,17 @@ void require_seats(const SceneSpec& scene, const PlacementSpec& spec) {
   faults.throw_if_errors();
 }
 
+/// In a run of the set's own, so that a run of the scene with these sensors gives the same rows.
+void watch_light(const SceneSpec& scene, const PlacementSpec& spec, unsigned threads, PlacementScore& score,
+                 std::vector<Issue>& warnings) {
+  const studies::LightRows rows =
+      studies::light_rows(studies::with_set(scene, score.set), *spec.light, spec.coverage.sensing, threads);
+  studies::LightScore light = studies::score_light(rows, *spec.light);
+  score.light = std::move(light.all);
+  score.areas = std::move(light.areas);
+  if (warnings.empty()) warnings = rows.warnings;  // of people, so the same for every set
+}
+
 /// What sensors notice together may differ from what they notice one by one: effects draw anew for each of a set.
 void keep_the_better(PlacementSearch& search, PlacementAim by) {
   search.gained = studies::ranked({search.even, search.found}, by).front().set.id == search.found.set.id;
@@ -211,29 +172,31 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
   add_models(scene, spec, options);
   PlacementReport report;
   const auto set_done = options.set_done ? options.set_done : [] {};
-  const auto watch_seats = [&](PlacementScore& score) {
+  const auto watch_people = [&](PlacementScore& score) {
     score.at_work = studies::seats_at_work(scene, spec, score.set, options.threads);
+    if (spec.light) watch_light(scene, spec, options.threads, score, report.warnings);
   };
   for (const SensorSetSpec& set : spec.sets) {
     report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
-    watch_seats(report.ranked.back());
+    watch_people(report.ranked.back());
     set_done();
   }
-  report.warnings = studies::warnings(report.ranked, scene.floor);
+  const std::vector<Issue> blind = studies::warnings(report.ranked, scene.floor);
+  report.warnings.insert(report.warnings.end(), blind.begin(), blind.end());
   const std::vector<Issue> idle = idle_keys(scene, spec);
   report.warnings.insert(report.warnings.end(), idle.begin(), idle.end());
   if (spec.search) {
     report.search = studies::search_placement(scene, spec, *spec.search, options.threads, set_done);
     PlacementSearch& search = *report.search;
-    watch_seats(search.even);
-    watch_seats(search.found);
+    watch_people(search.even);
+    watch_people(search.found);
     keep_the_better(search, spec.by);
     report.ranked.push_back(search.even);
     report.ranked.push_back(search.found);
   }
   report.ranked = studies::ranked(std::move(report.ranked), spec.by);
   report.text =
-      studies::to_text(report.ranked, spec.by) + (report.search ? studies::to_text(*report.search, spec.by) : "");
+      studies::to_text(report.ranked, spec) + (report.search ? studies::to_text(*report.search, spec.by) : "");
   report.best = report.ranked.empty() ? std::move(scene) : studies::with_set(std::move(scene), report.ranked[0].set);
   return report;
 }

@@ -30,14 +30,15 @@ namespace pirsim::studies {
 [[nodiscard]] SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
                                         unsigned threads = 0);
 
-/// Best first. By area: fewer blind seats decide among equals. By seats: those that are
-/// surely noticed, area, then fewer blind seats. Then the order
-/// given.
+/// Best first. By area: fewer blind seats decide among equals. By seats: those that are surely noticed, area, then
+/// fewer blind seats. By false-offs: time in the dark, empty light, then as by area. Then the order given.
 [[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores,
                                                  PlacementAim by = PlacementAim::area);
 
+/// What sets are ranked by, in words that follow "ranked by".
+[[nodiscard]] std::string ranked_by(const PlacementSpec& spec);
 /// A line that says what sets are ranked by, then one a set.
-[[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores, PlacementAim by);
+[[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSpec& spec);
 [[nodiscard]] std::string to_text(const PlacementSearch& search, PlacementAim by);
 
 }  // namespace pirsim::studies

@@ -1,6 +1,7 @@
 #include "studies/placement_page.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "core/text.hpp"
@@ -50,16 +51,60 @@ io::ReportSection section_of(const std::string& heading, const PlacementView& vi
           {view.map}};
 }
 
-io::Table ranking(const std::vector<PlacementScore>& scores) {
-  io::Table table{{"rank", "set", "area seen, m²", "blind", "overlap", "seats noticed", "surely", "deaf", "unseen"},
-                  {}};
+/// What false-offs are, and what else is told of light.
+std::string about_light(const PlacementLightSpec& light) {
+  std::ostringstream text;
+  text << "Light is switched by motion, an area's by the sensors that watch it, and goes off " << light.delay_min
+       << " min after the last one. A false-off: it goes off while somebody is there. Who is in the dark has waved, "
+          "and so "
+          "brought it back, after "
+       << light.wave_s << " s. The people are those of '" << light.people.name
+       << "'. Sets are ranked by false-offs an occupied hour; among equals by the share of occupied time in the dark, "
+          "then "
+          "by hours that are lit and empty. An area without a sensor counts as one whose sensor sees nobody.";
+  return text.str();
+}
+
+std::vector<std::string> in_columns(const PlacementLight& light) {
+  return {fixed(light.false_offs_an_hour(), 3), fixed(100.0 * light.dark_share(), 2) + " %",
+          fixed(light.lit_empty_h, 1)};
+}
+
+/// A row a set and area.
+io::ReportSection light_by_area(const std::vector<PlacementScore>& scores) {
+  io::Table table{
+      {"set", "area", "sensors", "occupied, h", "false-offs", "an occupied hour", "in the dark", "lit and empty, h"},
+      {}};
+  for (const PlacementScore& score : scores) {
+    for (const PlacementLight& area : score.areas) {
+      std::vector<std::string> row{score.set.id, area.area.empty() ? "all" : area.area,
+                                   std::to_string(area.sensors.size()), fixed(area.occupied_h, 1),
+                                   std::to_string(area.false_offs)};
+      const std::vector<std::string> more = in_columns(area);
+      row.insert(row.end(), more.begin(), more.end());
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return {"Light, area by area", {}, {std::move(table)}, {}};
+}
+
+io::Table ranking(const std::vector<PlacementScore>& scores, const PlacementSpec& spec) {
+  io::Table table{{"rank", "set"}, {}};
+  if (spec.light)
+    table.headings.insert(table.headings.end(), {"false-offs an hour", "in the dark", "lit and empty, h"});
+  table.headings.insert(table.headings.end(),
+                        {"area seen, m²", "blind", "overlap", "seats noticed", "surely", "deaf", "unseen"});
   const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
-    table.rows.push_back({std::to_string(i + 1), s.set.id, fixed(s.seen_area_m2, 2), percent(s.blind_fraction),
-                          percent(s.overlap), std::to_string(s.at_work.noticed.size()),
-                          std::to_string(s.at_work.surely.size()), std::to_string(s.at_work.deaf.size()),
-                          std::to_string(s.at_work.unseen.size())});
+    std::vector<std::string> row{std::to_string(i + 1), s.set.id};
+    if (spec.light) {
+      for (std::string& cell : in_columns(s.light)) row.push_back(std::move(cell));
+    }
+    row.insert(row.end(), {fixed(s.seen_area_m2, 2), percent(s.blind_fraction), percent(s.overlap),
+                           std::to_string(s.at_work.noticed.size()), std::to_string(s.at_work.surely.size()),
+                           std::to_string(s.at_work.deaf.size()), std::to_string(s.at_work.unseen.size())});
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -89,19 +134,20 @@ io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, c
   io::Report page;
   page.title = spec.coverage.name + ": where sensors go";
   page.paragraphs = {
-      "Sets of sensors for " + scene.name + ", ranked by " +
-          (spec.by == PlacementAim::seats
-               ? "the seats where somebody at work is noticed, then surely noticed, then by the area that they see"
-               : "the area that they see") +
-          ". The sensors' response is " + responses_in_words(report.best, spec.coverage.sensing) + ".",
+      "Sets of sensors for " + scene.name + ", ranked by " + ranked_by(spec) + ". The sensors' response is " +
+          responses_in_words(report.best, spec.coverage.sensing) + ".",
       "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
       "means blind to all. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
       "where "
       "no sensor noticed it. " +
           signs_of_maps(scene)};
-  io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked)}, {}};
+  io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked, spec)}, {}};
   if (report.search && !report.search->gained) sets.paragraphs = {"The search found nothing better than even spacing."};
   page.sections.push_back(std::move(sets));
+  if (spec.light) {
+    page.paragraphs.push_back(about_light(*spec.light));
+    page.sections.push_back(light_by_area(report.ranked));
+  }
   if (views.before) page.sections.push_back(section_of("Before: the scene's own sensors", *views.before));
   if (views.after) {
     page.sections.push_back(section_of("After: the best set, " + report.ranked[0].set.id, *views.after));

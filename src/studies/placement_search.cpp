@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "studies/coverage.hpp"
+#include "studies/light_search.hpp"
 #include "studies/placement.hpp"
 #include "studies/sitters.hpp"
 
@@ -136,6 +137,34 @@ PlacementSearch search_by_seats(const SceneSpec& scene, const PlacementSpec& spe
           score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
 }
 
+/// All places hang in one room at once: the people are simulated once, and each place has its own column of motion.
+std::vector<double> found_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+                                   const std::vector<double>& even, unsigned threads, const Tried& tried) {
+  std::vector<double> shares = even;
+  const std::vector<double> places = even_shares(search.evaluations);
+  shares.insert(shares.end(), places.begin(), places.end());
+  std::size_t n_told = 0;
+  const auto tell = [&](std::size_t n_done, std::size_t n_runs) {
+    for (; n_told < places.size() * n_done / n_runs; ++n_told) tried();
+  };
+  const LightRows rows =
+      light_rows(with_set(scene, sensors_along(search, shares, "")), *spec.light, spec.coverage.sensing, threads, tell);
+  std::vector<std::size_t> start(even.size());
+  std::iota(start.begin(), start.end(), std::size_t{0});
+  std::vector<double> found;
+  for (const std::size_t i : LightSearch(rows, *spec.light).best(start)) found.push_back(shares[i]);
+  std::ranges::sort(found);
+  return found;
+}
+
+PlacementSearch search_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+                                unsigned threads, const Tried& tried) {
+  const std::vector<double> even = even_shares(search.n_sensors);
+  const std::vector<double> found = found_by_light(scene, spec, search, even, threads, tried);
+  return {score(scene, spec.coverage, sensors_along(search, even, "even spacing"), threads),
+          score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
+}
+
 }  // namespace
 
 SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
@@ -182,6 +211,8 @@ PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& sp
       return search_by_area(scene, spec.coverage, search, threads, tried);
     case PlacementAim::seats:
       return search_by_seats(scene, spec, search, threads, tried);
+    case PlacementAim::false_off:
+      return search_by_light(scene, spec, search, threads, tried);
   }
   throw Error(ErrorCode::internal, "unknown aim of a placement search");
 }

@@ -14,8 +14,9 @@ using Tried = std::function<void()>;
 
 /// By area: seen area, by NLopt's DIRECT-L and then SBPLX. By seats: judges single places, evenly along the lines and
 /// those of even spacing, and covers seats, then seats that are surely noticed, then area,
-/// with the best of them (studies/best_cover.hpp). Starts from even
-/// spacing. Throws as score() does. Sets at_work of neither.
+/// with the best of them (studies/best_cover.hpp). By false-offs: the same places, in sight of the light's people
+/// (studies/light_search.hpp). Starts from even
+/// spacing. Throws as score() does. Sets at_work and light of neither.
 [[nodiscard]] PlacementSearch search_placement(
     const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search, unsigned threads = 0,
     const Tried& tried = [] {});

@@ -80,6 +80,7 @@ class Reader:
         self.scene(json.dumps(triangle_scene([floor_node(), eye])))
 
     def placements(self, text):
+        text = re.sub(r"\bscript: \w+\.yaml", "script: study.yaml", text)  # the page's script before it
         self.run("placements", "-q", "--scene", self.room, "--script", self.write("placements.yaml", text))
 
     def recipe(self, text):

@@ -12,6 +12,64 @@ import tempfile
 import time
 
 
+def light(pirsim, data, folder):
+    """Placements by false-offs: what the table tells of the best set is what a run of its scene and `control` tell."""
+    def called(*words, code=0):
+        result = subprocess.run([pirsim, *map(str, words)], capture_output=True, text=True)
+        assert result.returncode == code, (words, result.returncode, result.stderr)
+        return result
+
+    (folder / "people.yaml").write_text("""
+pirsim_script: 1
+sensing: {tick_rate_hz: 10}
+replicates: 2
+people:
+  - {id: one, style: natural, actions: [{enter: door}, {sit: S2}, {work: {duration_s: 900}}, {leave: door}]}
+  - {id: two, style: natural, actions: [{enter: door, at_s: 60}, {sit: S9}, {work: {duration_s: 600}}, {leave: door}]}
+""")
+    study = folder / "light.yaml"
+    study.write_text("""
+pirsim_placements: 1
+by: false_off
+light: {script: people.yaml, delay_min: 1}
+spacing_m: 1
+duration_s: 2
+target: {x_shapes: {}}
+sets: [{id: as built}]
+search:
+  n_sensors: 2
+  model: EKMC1601111
+  evaluations: 6
+  lines: [{from_m: [0.5, 2.6, -1.2], to_m: [6.5, 2.6, -1.2], tilt_deg: 90}]
+""")
+    scene = ("--scene", data / "rooms/meeting_room.gltf", "--script", study)
+    told = called("placements", *scene, "-o", folder / "lit.gltf", "--report", folder / "lit.html", "--maps", folder / "lit",
+                  "--threads", 1).stdout
+    assert told.startswith("ranked by how seldom light goes off on somebody (delay 1 min)"), told
+    assert "6 places tried: " in told and "false-offs an occupied hour" in told, told
+    assert told == called("placements", *scene, "--threads", 3).stdout, "threads change the ranking"
+    ranks = [line.split() for line in told.splitlines() if re.match(r" +\d+ +\d", line)]
+    assert len(ranks) == 3 and [float(r[1]) for r in ranks] == sorted(float(r[1]) for r in ranks), told
+    page = (folder / "lit.html").read_text(encoding="utf-8")
+    assert "Light, area by area" in page and "false-offs an occupied hour" in page
+    assert (folder / "lit/after.png").exists() or "No set does better" in page
+
+    rule = folder / "rule.yaml"
+    rule.write_text("pirsim_control: 1\nlights: [{id: light, delay_min: 1, wave_s: 10}]\n")
+    called("run", "--scene", folder / "lit.gltf", "--script", folder / "people.yaml", "-o", folder / "lit_rows.csv")
+    called("control", folder / "lit_rows.csv", "--rule", rule, "-o", folder / "costs.csv")
+    lines = [line.split(",") for line in (folder / "costs.csv").read_text().splitlines()]
+    costs = next(dict(zip(lines[0], line)) for line in lines[1:] if float(line[1]) == 1.0)
+    assert abs(float(costs["false_offs_an_hour"]) - float(ranks[0][1])) < 6e-4, (costs, ranks[0])
+    assert abs(100 * float(costs["dark_share"]) - float(ranks[0][2])) < 6e-3, (costs, ranks[0])
+    assert abs(float(costs["lit_empty_h"]) - float(ranks[0][3])) < 6e-3, (costs, ranks[0])
+
+    fault = called("placements", *scene, "--set", "by=false_of", code=3).stderr
+    assert "did you mean 'false_off'" in fault, fault
+    fault = called("placements", *scene, "--set", "light.script=peopl.yaml", code=3).stderr
+    assert "peopl.yaml" in fault, fault
+
+
 def main():
     pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
     scene = ["--scene", str(data / "rooms/meeting_room.gltf")]
@@ -75,6 +133,31 @@ def main():
         call("walktest", walk, *small, "-o", folder / "w2.csv", "--threads", 4)
         assert (folder / "w1.csv").read_bytes() == (folder / "w2.csv").read_bytes()
 
+        def standard(*more, code=0):
+            result = subprocess.run([pirsim, "walktest", *scene, *map(str, more)], capture_output=True, text=True)
+            assert result.returncode == code, (more, result.returncode, result.stderr)
+            return result
+
+        page = folder / "nema.html"
+        told = standard("--standard", "nema-wd7", "-o", folder / "n1.csv", "--report", page).stdout
+        assert re.match(r"major motion: coverage area \d+\.\d m2 \(\d+ ft2\), \d+ of \d+ cells", told), told
+        assert "\nminor motion: coverage area" in told and "seats in cells without minor motion coverage:" in told, told
+        assert "After NEMA WD 7" in page.read_text(encoding="utf-8")
+        call("walktest", data / "studies/nema_wd7.yaml", "-o", folder / "n2.csv")
+        alone = folder / "alone.yaml"
+        alone.write_text("pirsim_walk_test: 1\nstandard: nema-wd7\n")
+        call("walktest", alone, "-o", folder / "n3.csv", "--threads", 1)
+        assert (folder / "n1.csv").read_bytes() == (folder / "n2.csv").read_bytes() == (folder / "n3.csv").read_bytes()
+        points = (folder / "n1.csv").read_text().splitlines()[1:]
+        xs = sorted({float(line.split(",")[0]) for line in points})
+        assert all(abs(b - a - 0.9144) < 2e-4 for a, b in zip(xs, xs[1:])), xs
+        told = standard("--standard", "nema-wd7", "--set", "spacing_m=1.5", code=3).stderr
+        assert "at most 3 ft" in told and told.count("\n") == 1, told
+        told = standard("--standard", "nema-wd8", code=2).stderr
+        assert "did you mean 'nema-wd7'?" in told and told.count("\n") == 1, told
+        assert "exclude each other" in standard("--standard", "nema-wd7", "--script", walk, code=2).stderr
+        assert "--standard nema-wd7) is missing" in standard(code=2).stderr
+
         sets = ["--set", "spacing_m=0.3", "--set", "search.evaluations=8"]
         ranking = call("placements", data / "studies/placements.yaml", *sets).stdout
         assert "as built" in ranking and "more than even spacing" in ranking, ranking
@@ -100,6 +183,7 @@ def main():
         assert "did you mean 'seats'" in fault, fault
         fault = call("placements", *by_seats, "--set", "search.evaluations=1", code=3).stderr
         assert "2 sensors need as many places" in fault, fault
+        light(pirsim, data, folder)
     print("coverage, walk test and placements: as described")
 
 

@@ -95,3 +95,29 @@ def test_placements_are_the_command_lines(room, data, command):
     seats = sorted(pirsim.read_scene(room).seats, key=lambda seat: seat.id)
     for score in found.ranked:
         assert sorted(score.noticed_seats + score.deaf_seats + score.unseen_seats) == [seat.id for seat in seats]
+        assert set(score.surely_seats) <= set(score.noticed_seats) and score.light is None
+
+
+def test_placements_by_false_offs_tell_of_light(room, data, tmp_path):
+    (tmp_path / "people.yaml").write_text("""
+pirsim_script: 1
+sensing: {tick_rate_hz: 10}
+people: [{id: one, style: natural, actions: [{enter: door}, {sit: S2}, {work: {duration_s: 300}}, {leave: door}]}]
+""")
+    (tmp_path / "light.yaml").write_text("""
+pirsim_placements: 1
+by: false_off
+light: {script: people.yaml, delay_min: 0.5}
+spacing_m: 1
+duration_s: 2
+target: {x_shapes: {}}
+sets:
+  - id: as built
+  - {id: nobody, sensors: [{model: EKMC1601111, position_m: [0.5, 2.6, -0.5], yaw_deg: 0, tilt_deg: -80}]}
+""")
+    found = pirsim.placements(room, tmp_path / "light.yaml")
+    best, blind = found.ranked
+    assert best.set == "as built" and blind.set == "nobody"
+    assert best.light.false_offs < blind.light.false_offs
+    assert best.light.occupied_h == blind.light.occupied_h > 300 / 3600
+    assert 0 <= best.light.dark_h < blind.light.dark_h < blind.light.occupied_h

@@ -211,6 +211,8 @@ int main() {
   print<PlacementSearchSpec>("search");
   print<WalkRequirement>("requirement");
   print<WalkTestSpec>("walk_test");
+  print<SwingingArmSpec>("arm");
+  print<PlacementLightSpec>("placement_light");
   print<NuisanceSpec>("nuisance");
   std::cout << "  \"Activity\": " << quoted(literal<Activity>()) << "\n}\n";
 }

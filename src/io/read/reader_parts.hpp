@@ -71,6 +71,18 @@ template <typename Value, typename Enum, typename Spec, typename Range>
   }
   return words;
 }
+/// Reads a list of words, if it is there; an empty one is a fault.
+template <typename Enum, typename Spec, typename Range>
+void read_words(YamlMap& map, std::vector<Enum>& value, const Field<Spec, std::vector<Enum>, Range>& field) {
+  if (!map.child(field.name)) return;
+  value.clear();
+  std::vector<std::string> words;
+  for (const auto& [word, known] : Words<Enum>::all) words.emplace_back(word);
+  for (const YamlNode& item : map.required_list(field.name)) {
+    const auto at = item.choice(map.faults(), map.label(field.name), words);
+    if (at) value.push_back(Words<Enum>::all[*at].second);
+  }
+}
 /// Reads every field whose form is plain: words, lists of names, numbers, times of day. What isn't there keeps its
 /// value. Numbers come last, since how many names there are may bound them.
 template <typename Spec>
@@ -82,6 +94,11 @@ void read_fields(YamlMap& map, Spec& spec) {
       value = map.choice<Value>(field.name, value, words_of<Value, Value>(field));
     } else if constexpr (std::same_as<Value, std::vector<std::string>>) {
       value = map.texts(field.name, value);
+    } else if constexpr (requires {
+                           requires Worded<typename Value::value_type>;
+                           value.push_back({});
+                         }) {
+      read_words(map, value, field);
     } else if constexpr (requires {
                            requires Worded<typename Value::value_type>;
                            value.has_value();

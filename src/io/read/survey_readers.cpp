@@ -1,4 +1,4 @@
-// Readers of coverage studies, walk tests, placements and the nuisance, which share their keys.
+// Readers of coverage studies, placements and the nuisance, which share their keys.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -6,12 +6,20 @@
 #include <string>
 
 #include "io/read/reader_parts.hpp"
+#include "io/read/survey_parts.hpp"
 #include "io/read/yaml_map.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/survey.hpp"
 
 namespace pirsim::io {
+
+std::vector<EffectSpec> read_survey_effects(YamlMap& map) {
+  const std::vector<EffectSpec> effects = read_effects(map.list("effects"), map.faults());
+  pirsim::effects::check(effects, map.faults());
+  return effects;
+}
+
 namespace {
 
 TurnSpec read_turn(const YamlNode& node, Diagnostics& faults) {
@@ -41,13 +49,6 @@ XShapesSpec read_x_shapes(const YamlNode& node, Diagnostics& faults) {
   return target;
 }
 
-/// `effects` of any survey.
-std::vector<EffectSpec> read_survey_effects(YamlMap& map) {
-  const std::vector<EffectSpec> effects = read_effects(map.list("effects"), map.faults());
-  pirsim::effects::check(effects, map.faults());
-  return effects;
-}
-
 /// sensing, spacing_m, duration_s, without, target, seed and effects.
 void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   Diagnostics& faults = map.faults();
@@ -67,29 +68,16 @@ void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   spec.effects = read_survey_effects(map);
 }
 
-/// A file of format version 1; all its faults are told at once.
-template <typename Fill>
-auto read_versioned(const std::filesystem::path& file, std::span<const std::string> overrides, const char* what,
-                    const char* version_key, Fill fill) {
-  const YamlNode root = YamlNode::load(read_input(file), overrides);
-  Diagnostics faults;
-  YamlMap map(root, faults, what);
-  check_version(map, version_key);
-  auto spec = fill(map);
-  map.finish();
-  faults.throw_if_errors();
-  return spec;
-}
-
 }  // namespace
 
 CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return read_versioned(file, overrides, "coverage study", "pirsim_coverage", [&](YamlMap& map) {
-    CoverageSpec spec;
-    spec.name = map.text("name", stem_of_input(file));
-    read_coverage_keys(map, spec);
-    return spec;
-  });
+  return read_versioned(YamlNode::load(read_input(file), overrides), "coverage study", "pirsim_coverage",
+                        [&](YamlMap& map) {
+                          CoverageSpec spec;
+                          spec.name = map.text("name", stem_of_input(file));
+                          read_coverage_keys(map, spec);
+                          return spec;
+                        });
 }
 
 namespace {
@@ -147,68 +135,62 @@ PlacementSearchSpec read_search(const YamlNode& node, ModelPlaces& models, Diagn
   return search;
 }
 
+/// folder: what the script's name is relative to.
+PlacementLightSpec read_light(const YamlNode& node, const std::filesystem::path& folder, Diagnostics& faults) {
+  YamlMap map(node, faults, "light");
+  PlacementLightSpec light;
+  read_numbers(map, light);
+  const std::string script = map.required_text("script");
+  std::vector<std::string> overrides;
+  if (map.child("replicates"))
+    overrides.push_back("replicates=" + std::to_string(map.integer("replicates", 1, {.min = 1, .max = 1000})));
+  map.finish();
+  if (script.empty()) return light;
+  try {
+    light.people = read_script(folder / script, overrides);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::io) throw;
+    faults.error(map.where("script"), std::string("light: script: ") + error.what());
+  }
+  return light;
+}
+
 }  // namespace
 
 PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return read_versioned(file, overrides, "placement study", "pirsim_placements", [&](YamlMap& map) {
-    PlacementSpec spec;
-    spec.coverage.name = map.text("name", stem_of_input(file));
-    read_coverage_keys(map, spec.coverage);
-    std::set<std::string> ids;
-    for (const YamlNode& set : map.list("sets")) {
-      spec.sets.push_back(read_set(set, spec.models, map.faults()));
-      if (!ids.insert(spec.sets.back().id).second)
-        map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
-    }
-    read_fields(map, spec);
-    if (map.has("by")) spec.by_where = map.where("by");
-    if (const auto search = map.child("search")) {
-      spec.search = read_search(*search, spec.models, map.faults());
-      if (spec.by == PlacementAim::seats && spec.search->evaluations < spec.search->n_sensors) {
-        map.faults().error(search->where(), "search: " + std::to_string(spec.search->n_sensors) +
-                                                " sensors need as many places: evaluations, by seats the number of "
-                                                "places, is " +
-                                                std::to_string(spec.search->evaluations));
-      }
-    }
-    return spec;
-  });
-}
-
-namespace {
-
-/// Numbers of the test itself that stand with the movement that they are about.
-template <auto... members>
-void read_numbers_of(YamlMap& map, WalkTestSpec& spec) {
-  (read_number(map, spec, field_of<members>()), ...);
-}
-
-}  // namespace
-
-WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return read_versioned(file, overrides, "walk test", "pirsim_walk_test", [&](YamlMap& map) {
-    WalkTestSpec spec;
-    spec.name = map.text("name", stem_of_input(file));
-    spec.sensing = read_sensing(map.child("sensing"), map.faults());
-    read_numbers_of<&WalkTestSpec::spacing_m, &WalkTestSpec::seed>(map, spec);
-    if (const auto node = map.child("person")) {
-      YamlMap person(*node, map.faults(), "person");
-      read_numbers(person, spec.person);
-      person.finish();
-    }
-    read_part(map, "major_motion", spec.major,
-              [&](YamlMap& major) { read_numbers_of<&WalkTestSpec::path_m>(major, spec); });
-    read_part(map, "minor_motion", spec.minor, [&](YamlMap& minor) {
-      read_numbers_of<&WalkTestSpec::seat_height_m, &WalkTestSpec::desk_height_m, &WalkTestSpec::arm_amplitude_m,
-                      &WalkTestSpec::arm_period_s>(minor, spec);
-    });
-    spec.effects = read_survey_effects(map);
-    return spec;
-  });
+  return read_versioned(
+      YamlNode::load(read_input(file), overrides), "placement study", "pirsim_placements", [&](YamlMap& map) {
+        PlacementSpec spec;
+        spec.coverage.name = map.text("name", stem_of_input(file));
+        read_coverage_keys(map, spec.coverage);
+        std::set<std::string> ids;
+        for (const YamlNode& set : map.list("sets")) {
+          spec.sets.push_back(read_set(set, spec.models, map.faults()));
+          if (!ids.insert(spec.sets.back().id).second)
+            map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
+        }
+        read_fields(map, spec);
+        if (map.has("by")) spec.by_where = map.where("by");
+        if (const auto light = map.child("light")) spec.light = read_light(*light, folder_of_input(file), map.faults());
+        if (spec.by == PlacementAim::false_off && !spec.light) {
+          map.faults().error(spec.by_where,
+                             "by: false_off: whose light? It needs `light: {script: week.yaml, delay_min: 10}`");
+        }
+        if (const auto search = map.child("search")) {
+          spec.search = read_search(*search, spec.models, map.faults());
+          if (spec.by != PlacementAim::area && spec.search->evaluations < spec.search->n_sensors) {
+            map.faults().error(search->where(), "search: " + std::to_string(spec.search->n_sensors) +
+                                                    " sensors need as many places: evaluations, by " +
+                                                    word_of(spec.by) + " the number of places, is " +
+                                                    std::to_string(spec.search->evaluations));
+          }
+        }
+        return spec;
+      });
 }
 
 NuisanceSpec read_nuisance(const std::filesystem::path& file) {
-  return read_versioned(file, {}, "nuisance", "pirsim_nuisance", [&](YamlMap& map) {
+  return read_versioned(YamlNode::load(read_input(file)), "nuisance", "pirsim_nuisance", [&](YamlMap& map) {
     NuisanceSpec spec;
     read_numbers(map, spec);
     return spec;
