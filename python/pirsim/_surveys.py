@@ -67,7 +67,7 @@ class CoverageMap(Grid):
 
 @dataclass(frozen=True, eq=False)
 class WalkTest(Grid):
-    """How often a walker (major) and a sitter's arms (minor) were noticed in time; [row, column] each."""
+    """How often a walker (major) and a sitter's arms, or a swinging arm, (minor) were noticed in time; [row, column] each."""
 
     major_made: npt.NDArray[np.int32]
     """Tries that were possible there."""
@@ -75,14 +75,14 @@ class WalkTest(Grid):
     minor_made: npt.NDArray[np.int32]
     minor_noticed: npt.NDArray[np.int32]
     minor_deaf: npt.NDArray[np.int32]
-    """Tries that weren't noticed, though a sensor saw the sitter."""
+    """Tries that weren't noticed, though a sensor saw the sitter, or the arm."""
     seats: dict[str, bool]
-    """Is somebody noticed who sits there and moves their arms?"""
+    """Is somebody noticed who sits there and moves their arms? None of a swinging arm's test."""
 
     def __repr__(self) -> str:
         missed = [seat for seat, noticed in self.seats.items() if not noticed]
         tries = [f"{what} {int(noticed.sum())} of {int(made.sum())}" for what, noticed, made in
-                 (("walker", self.major_noticed, self.major_made), ("sitter's arms", self.minor_noticed, self.minor_made))]
+                 (("walker", self.major_noticed, self.major_made), ("arms", self.minor_noticed, self.minor_made))]
         return (f"<pirsim.WalkTest: {self._about()}\n  tries that were noticed in time: {', '.join(tries)}\n"
                 f"  {len(self.seats)} seats, not noticed: {', '.join(missed) or 'none'}>")
 
@@ -102,14 +102,17 @@ def coverage(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = N
     return CoverageMap(**arrays)
 
 
-def walk_test(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = None,
-              sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
+def walk_test(scene: PathOr | Scene, script: PathOr | None = None, *, standard: str | None = None,
+              set: Overrides | None = None, sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
               progress: Progress | None = None) -> WalkTest:
     """Tries at every point of the floor how surely walkers and sitters are noticed in time.
 
-    Arguments as of coverage(); script: a walk test's YAML file.
+    Arguments as of coverage(); script: a walk test's YAML file, or else standard: "nema-wd7".
     """
-    arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), as_input(script, str), as_overrides(set),
+    if (script is None) == (standard is None):
+        raise TypeError("walk_test() takes a script or a standard")
+    test = "" if script is None else as_input(script, str)
+    arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), test, standard or "", as_overrides(set),
                                              *folders(sensors), as_threads(threads), progress)
     for diagnostic in arrays.pop("warnings"):
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)

@@ -25,8 +25,8 @@ class Observer {
   void look(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure);
   /// At zones alone, which there are.
   void look_at_zones(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure);
-  /// As look(), at one body alone, in any posture, with leaves as before a run. solids: (n_parts) as append_solids()
-  /// gives them.
+  /// As look(), at one body alone, in any posture, with leaves as before a run. solids: at most n_parts, as warm as the
+  /// parts in their order.
   void look(std::span<const PosedShape> solids, const BodyRadiance& radiance, Exposure& exposure);
 
  private:

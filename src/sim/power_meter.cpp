@@ -65,12 +65,15 @@ void PowerMeter::measure(std::span<const PosedShape> solids, const BodyRadiance&
   moved_.clear();
   for (std::size_t i = 0; i < figures_.size(); ++i) {
     const Figure& figure = figures_[i];
-    if (figure.is_there && (figure.humanoid != nullptr || figure.radiance != radiance)) moved_.push_back({i, {}, {}});
+    const bool stays =
+        i == 0 && figure.humanoid == nullptr && figure.radiance == radiance && figure.n_solids == solids.size();
+    if (figure.is_there && !stays) moved_.push_back({i, {}, {}});
   }
   take_away();
   figures_.resize(std::max<std::size_t>(figures_.size(), 1));
-  if (!figures_.front().is_there) figures_.front() = {true, nullptr, radiance, surfaces_of(radiance), {}};
-  moved_.assign(1, {0, solids, figures_.front().surfaces});
+  if (!figures_.front().is_there)
+    figures_.front() = {true, nullptr, solids.size(), radiance, surfaces_of(radiance), {}};
+  moved_.assign(1, {0, solids, std::span(figures_.front().surfaces).first(solids.size())});
   follow(moved_);
   std::ranges::copy(powers_, powers.begin());
 }
@@ -105,7 +108,7 @@ void PowerMeter::follow(const std::vector<Actor>& actors) {
     const body::Outline outline = actors[i].motion().outline();
     const bool is_new = !figure.is_there;
     if (!is_new && tracer_->may_be_remembered() && is_same(outline, figure.outline)) continue;
-    if (is_new) figure = {true, &person.humanoid, person.radiance, surfaces_of(person.radiance), {}};
+    if (is_new) figure = {true, &person.humanoid, body::n_parts, person.radiance, surfaces_of(person.radiance), {}};
     figure.outline = outline;
     moved_.push_back({i, mannequins_[i].pose(person.humanoid, outline), figure.surfaces});
   }

@@ -33,7 +33,8 @@ class PowerMeter {
   PowerMeter(const SensorArray& array, TracerKind kind);
   /// leaves: (n_doors) as they stand; powers: (n_receivers) overwritten.
   void measure(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::span<PowerSteps> powers);
-  /// The same of one body alone, with leaves as before a run. solids: (n_parts) as append_solids() gives them.
+  /// The same of one body alone, with leaves as before a run. solids: at most n_parts, as warm as the parts in their
+  /// order.
   void measure(std::span<const PosedShape> solids, const BodyRadiance& radiance, std::span<PowerSteps> powers);
   /// Ray by ray.
   void explain(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::vector<PowerShare>& shares);
@@ -43,6 +44,7 @@ class PowerMeter {
   struct Figure {
     bool is_there = false;
     const body::Humanoid* humanoid = nullptr;  ///< null: of a body that isn't an actor's
+    std::size_t n_solids = 0;
     BodyRadiance radiance{};
     std::array<std::uint8_t, body::n_parts> surfaces{};  ///< parts of equal radiance
     body::Outline outline;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "body/humanoid.hpp"
+#include "body/obstacles.hpp"
 #include "body/walkable_floor.hpp"
 #include "io/pages/report.hpp"
 #include "pirsim/scene.hpp"
@@ -30,40 +31,53 @@ class WalkTest {
   /// Effects that a walk test can't show.
   [[nodiscard]] std::vector<Issue> warnings() const;
 
-  /// Postures tick by tick of a person at the origin who faces -Z; the first is the state before.
-  using Movement = std::vector<body::Posture>;
+  /// What moves at the origin, facing -Z, tick by tick; the first pose is the state before.
+  struct Movement {
+    std::vector<Shape> solids;
+    sim::BodyRadiance radiance{};
+    std::vector<std::vector<Frame>> poses;  ///< (n_ticks + 1 x n_solids)
+  };
   [[nodiscard]] const Movement& crossing() const noexcept { return crossing_; }
-  [[nodiscard]] const Movement& arm_work() const noexcept { return arm_work_; }
-  [[nodiscard]] const body::Humanoid& humanoid() const noexcept { return humanoid_; }
+  /// Of a sitter's forearms, or one for each plane in which an arm swings.
+  [[nodiscard]] const std::vector<Movement>& minor_motions() const noexcept { return minor_motions_; }
+  /// In every direction each of them.
+  [[nodiscard]] std::uint32_t tries_a_point() const noexcept;
   [[nodiscard]] const body::WalkableFloor& floor() const noexcept { return floor_; }
+  /// Can somebody sit, or the arm hang, over this point?
+  [[nodiscard]] bool has_room_for_minor(const Vec2& point) const noexcept;
 
  private:
+  [[nodiscard]] Movement of_person() const;
   [[nodiscard]] Movement make_crossing() const;
   [[nodiscard]] Movement make_arm_work() const;
+  [[nodiscard]] Movement make_swing(ArmSwing plane) const;
 
   SurveyBase survey_;
   WalkTestSpec spec_;
   FloorGrid grid_;
   body::Humanoid humanoid_;
   body::WalkableFloor floor_;
-  Movement crossing_, arm_work_;
+  std::optional<body::Obstacles> around_arm_;
+  Movement crossing_;
+  std::vector<Movement> minor_motions_;
 };
 
 /// Tries one movement after another in the sensors' sight. Belongs to one thread and to a walk test that outlives it.
 class WalkTester {
  public:
   explicit WalkTester(const WalkTest& test);
-  /// A walk is tried if the whole path is walkable, sitting if the point is. number: of the point, which keys what
-  /// effects draw.
+  /// A walk is tried if the whole path is walkable, sitting if the point is, an arm if nothing solid is where its axis
+  /// is. number: of the point, which keys what effects draw.
   [[nodiscard]] PointResult try_point(const Vec2& point, std::uint32_t number);
-  /// Minor motion on a seat of the scene, facing as it does.
+  /// A sitter's forearms on a seat of the scene, facing as it does.
   [[nodiscard]] SeatResult try_seat(const SeatSpec& seat, std::uint32_t number);
 
  private:
   /// Adds a try: noticed in time?
   void attempt(const WalkTest::Movement& movement, const Frame& world_from_movement, std::uint32_t try_number,
                Tries& tries);
-  void look(const body::Posture& posture, const Frame& world_from_movement, sim::Exposure& exposure);
+  void look(const WalkTest::Movement& movement, std::size_t tick, const Frame& world_from_movement,
+            sim::Exposure& exposure);
 
   const WalkTest& test_;
   const sim::SensorArray& array_;
@@ -71,7 +85,6 @@ class WalkTester {
   sim::Detector detector_;
   sim::Logger logger_;
   sim::Exposure before_, after_;
-  sim::BodyRadiance radiance_;
   // Scratch.
   std::vector<PosedShape> solids_;
   std::vector<std::uint8_t> triggers_;

@@ -2,21 +2,13 @@
 #include <sstream>
 
 #include "core/text.hpp"
-#include "pirsim/response.hpp"
 #include "studies/area_tally.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
+#include "studies/walk_words.hpp"
 
 namespace pirsim::studies {
 namespace {
-
-bool passes(const Tries& tries, const WalkRequirement& requirement) {
-  return tries.made > 0 && *tries.probability() >= requirement.probability - 1e-12;
-}
-
-struct PassCount {
-  std::size_t tried = 0, passed = 0;
-};
 
 PassCount count_passes(const WalkTestResult& result, Tries PointResult::*motion, const WalkRequirement& requirement) {
   PassCount count;
@@ -46,48 +38,9 @@ std::vector<std::string> passes_by_area(const WalkTest& test, const WalkTestResu
     note(result.points[i].minor, test.spec().minor, minor[area]);
   }
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    const auto told = [](const PassCount& count) {
-      return std::to_string(count.passed) + " of " + std::to_string(count.tried);
-    };
-    lines.push_back(with_sensors(test.scene(), areas, i) + ": walker " + told(major[i]) + " points pass, arms " +
-                    told(minor[i]));
-  }
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    lines.push_back(WalkWords(test).of_area(with_sensors(test.scene(), areas, i), major[i], minor[i]));
   return lines;
-}
-
-std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
-
-std::string seconds(double value) {
-  std::ostringstream out;
-  out << value << " s";
-  return out.str();
-}
-
-std::string sentence(const std::string& motion, const PassCount& count, const WalkRequirement& requirement) {
-  return motion + " noticed within " + seconds(requirement.within_s) + " in at least " +
-         percent(requirement.probability) + " of " + std::to_string(requirement.directions) +
-         " directions: " + std::to_string(count.passed) + " of " + std::to_string(count.tried) + " points pass";
-}
-
-std::string seats_in_words(const WalkTestResult& result) {
-  std::string noticed, deaf, unseen;
-  for (const SeatResult& seat : result.seats) {
-    (seat.noticed ? noticed : seat.deaf ? deaf : unseen) += " " + seat.seat;
-  }
-  const auto named = [](const std::string& seats) { return seats.empty() ? " none" : seats; };
-  return "seats where a sitter's arms are noticed:" + named(noticed) + "; seen, but not noticed:" + named(deaf) +
-         "; unseen:" + named(unseen);
-}
-
-/// Of all tries with a sitter: how many failed, and in how many of those the sitter was seen.
-std::string deafness_in_words(const WalkTestResult& result) {
-  int missed = 0, deaf = 0;
-  for (const PointResult& point : result.points) {
-    missed += point.minor.made - point.minor.noticed;
-    deaf += point.minor.deaf;
-  }
-  return "of " + std::to_string(missed) + " tries without notice, sensors saw the sitter in " + std::to_string(deaf);
 }
 
 io::MapChart map_of(const WalkTest& test, const std::string& title, const std::string& label) {
@@ -108,12 +61,12 @@ io::MapChart map_of(const WalkTest& test, const std::string& title, const std::s
 }
 
 void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
-              Tries PointResult::*motion, const WalkRequirement& requirement) {
+              Tries PointResult::*motion, const WalkRequirement& requirement, const std::string& time) {
   io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
-  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
+  io::MapChart pass = map_of(test, WalkWords(test).pass_title(), "verdict");
   pass.colours = io::MapChart::Colours::pass_or_fail;
-  probability.note = "within " + seconds(requirement.within_s) + "; no colour: nothing could be tried there";
-  pass.note = "required: " + percent(requirement.probability);
+  probability.note = time + "; no colour: nothing could be tried there";
+  pass.note = "required: " + fixed(100.0 * requirement.probability, 0) + " %";
   probability.unit = "of the tries noticed";
   for (const PointResult& point : result.points) {
     const Tries& tries = point.*motion;
@@ -122,6 +75,11 @@ void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestRe
   }
   section.charts.emplace_back(std::move(probability));
   section.charts.emplace_back(std::move(pass));
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
 }
 
 }  // namespace
@@ -150,36 +108,33 @@ std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
 }
 
 std::string to_text(const WalkTest& test, const WalkTestResult& result) {
-  std::string by_area;
-  for (const std::string& line : passes_by_area(test, result)) by_area += "  " + line + "\n";
-  return sentence("walker", count_passes(result, &PointResult::major, test.spec().major), test.spec().major) + "\n" +
-         sentence("sitter's arms", count_passes(result, &PointResult::minor, test.spec().minor), test.spec().minor) +
-         "; " + deafness_in_words(result) + "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n") +
-         by_area;
+  const WalkWords words(test);
+  const std::string seats = words.of_seats(result);
+  std::string text = words.of_major(count_passes(result, &PointResult::major, test.spec().major)) + "\n" +
+                     words.of_minor(count_passes(result, &PointResult::minor, test.spec().minor)) + "; " +
+                     words.of_deafness(result) + "\n" + (seats.empty() ? "" : seats + "\n");
+  for (const std::string& line : passes_by_area(test, result)) text += "  " + line + "\n";
+  return text;
 }
 
 io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) {
   const WalkTestSpec& spec = test.spec();
+  const WalkWords words(test);
   io::Report report;
-  report.title = spec.name + ": walk test of " + test.scene().name;
-  report.paragraphs = {
-      "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
-      "and "
-      "sits there facing several ways and moves both forearms (minor motion). A try counts as noticed if any sensor "
-      "reports motion in time; the sensors' response is " +
-          responses_in_words(test.scene(), spec.sensing) +
-          ". In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.",
-      signs_of_maps(test.scene())};
-  const std::vector<std::string> by_area = passes_by_area(test, result);
+  report.title = words.title();
+  report.paragraphs = {words.method(), signs_of_maps(test.scene())};
+  const std::vector<std::string> by_area = passes_by_area(test, result), sources = words.sources();
   if (!by_area.empty())
     report.paragraphs.push_back("By area (its sensors in brackets): " + joined(by_area, "; ") + ".");
-  io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{"Minor motion: arms of a sitter", {}, {}, {}};
-  major.paragraphs = {sentence("Walker", count_passes(result, &PointResult::major, spec.major), spec.major) + "."};
-  minor.paragraphs = {sentence("Arms", count_passes(result, &PointResult::minor, spec.minor), spec.minor) + "; " +
-                      deafness_in_words(result) + "."};
-  if (!result.seats.empty()) minor.paragraphs.push_back("Facing as the seats do, " + seats_in_words(result) + ".");
-  add_maps(major, test, result, &PointResult::major, spec.major);
-  add_maps(minor, test, result, &PointResult::minor, spec.minor);
+  report.paragraphs.insert(report.paragraphs.end(), sources.begin(), sources.end());
+  io::ReportSection major{words.major_heading(), {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
+  major.paragraphs = {capitalised(words.of_major(count_passes(result, &PointResult::major, spec.major))) + "."};
+  minor.paragraphs = {capitalised(words.of_minor(count_passes(result, &PointResult::minor, spec.minor))) + "; " +
+                      words.of_deafness(result) + "."};
+  const std::string seats = words.of_seats(result);
+  if (!seats.empty()) minor.paragraphs.push_back((spec.arm ? "In all, " : "Facing as the seats do, ") + seats + ".");
+  add_maps(major, test, result, &PointResult::major, spec.major, words.time_of_major());
+  add_maps(minor, test, result, &PointResult::minor, spec.minor, words.time_of_minor());
   report.sections = {std::move(major), std::move(minor)};
   return report;
 }

@@ -66,7 +66,7 @@ VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
-          "--cleaning": "none", "--time-zone": "Europe/Berlin", "--light": "lit.csv", "--schedule": "light.csv"}
+          "--cleaning": "none", "--time-zone": "Europe/Berlin", "--standard": "nema-wd7", "--light": "lit.csv", "--schedule": "light.csv"}
 OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
            "placements": "better.gltf"}
 
@@ -122,8 +122,10 @@ class Options(unittest.TestCase):
                     if command == ("check",) and option in ("--floor", "--output"):
                         value += "--suggest",
                     needed = with_folder(option, rest)
-                    result = pirsim(*command, "--scene", "nowhere.gltf", "--script", DATA / "studies" / script, *needed,
-                                    option, *value, code=4, cwd=folder)
+                    # A standard takes the place of a script.
+                    study_of = () if option == "--standard" else ("--script", DATA / "studies" / script)
+                    result = pirsim(*command, "--scene", "nowhere.gltf", *study_of, *needed, option, *value, code=4,
+                                    cwd=folder)
                     self.assertIn("nowhere.gltf", result.stderr, (command, option))
             for command, rest in OTHERS.items():
                 for option, takes in options_of(command).items():
