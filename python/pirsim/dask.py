@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterable
 
 from . import __version__, git_revision, read_scene, read_script
-from ._study import PathOr
+from ._study import PathOr, as_file
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InternalError,
                      UsageError)
 from .specs import Diagnostic, InputFile
@@ -50,16 +50,22 @@ class _Work:
 
 
 def run_study(client: Any, scene: PathOr, script: PathOr, output: PathOr, *, shards: int,
-              arguments: Iterable[str] = (), command: Iterable[str] = (), progress: Progress | None = None) -> None:
+              marks: PathOr | None = None, sensors: Iterable[PathOr] = (), arguments: Iterable[str] = (),
+              command: Iterable[str] = (), progress: Progress | None = None) -> None:
     """Simulates a study on the workers of `client` and writes its rows.
 
     output: as `pirsim -o`; beside it a folder `<output>.shards` keeps the shards, and a call with shards in it simulates
-    those that are missing alone. arguments: further ones of the command, ["--set", "seed=2"]. command: how workers and
+    those that are missing alone. marks, sensors: as in `pirsim.compile`. arguments: further ones of the command,
+    ["--set", "seed=2"]. command: how workers and
     this machine call pirsim, instead of the package's own. progress: called with the number of shards that are there,
     and of all. Throws what `pirsim.run` throws.
     """
-    arguments = ["--scene", str(scene), "--script", str(script), *arguments]
-    work = _work(arguments, [*read_script(script).files, *read_scene(scene).files], shards, command)
+    scene, script = as_file(scene, "rooms"), as_file(script, "studies")
+    folders = [str(folder) for folder in sensors]
+    files = [*read_script(script).files, *read_scene(scene, marks=marks, sensors=folders).files]
+    given = [*_named("--marks", [str(marks)] if marks else []), *_named("--sensors", folders)]
+    arguments = ["--scene", scene, "--script", script, *given, *arguments]
+    work = _work(arguments, files, shards, command)
     folder = pathlib.Path(f"{output}.shards")
     missing = [index for index in range(1, shards + 1)
                if not (folder / f"shard-{index:04}-of-{shards:04}.csv.json").exists()]
@@ -67,14 +73,19 @@ def run_study(client: Any, scene: PathOr, script: PathOr, output: PathOr, *, sha
     _call(work, ["merge", str(folder), "-o", str(output)])
 
 
-def run_dataset(client: Any, recipe: PathOr, folder: PathOr, *, shards: int, arguments: Iterable[str] = (),
-                command: Iterable[str] = (), progress: Progress | None = None) -> None:
+def run_dataset(client: Any, recipe: PathOr, folder: PathOr, *, shards: int, sensors: Iterable[PathOr] = (),
+                arguments: Iterable[str] = (), command: Iterable[str] = (), progress: Progress | None = None) -> None:
     """Makes a dataset on the workers of `client`; arguments as those of `run_study`."""
-    arguments = ["dataset", str(recipe), *arguments]
+    recipe = as_file(recipe, "recipes")
+    arguments = ["dataset", recipe, *_named("--sensors", map(str, sensors)), *arguments]
     digest = hashlib.sha256(pathlib.Path(recipe).read_bytes()).hexdigest()
-    work = _work(arguments, [InputFile(str(recipe), digest)], shards, command)
+    work = _work(arguments, [InputFile(recipe, digest)], shards, command)
     _make(client, work, range(1, shards + 1), pathlib.Path(folder), progress)
     _call(work, [*arguments, "-o", str(folder), "--finish", "--quiet"])
+
+
+def _named(option: str, values: Iterable[str]) -> list[str]:
+    return [word for value in values for word in (option, value)]
 
 
 def _work(arguments: Iterable[str], files: Iterable[InputFile], shards: int, command: Iterable[str]) -> _Work:

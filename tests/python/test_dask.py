@@ -58,7 +58,7 @@ def test_a_study_has_the_bytes_of_one_process_though_a_worker_is_killed(client, 
 def test_a_dataset_has_the_files_of_one_process(client, command, program, data, tmp_path):
     recipe = data / "recipes" / "tiny.yaml"
     command("dataset", recipe, "-o", tmp_path / "one", "--sensors", data / "sensors", "-q")
-    pirsim.dask.run_dataset(client, recipe, tmp_path / "many", shards=4, arguments=["--sensors", str(data / "sensors")],
+    pirsim.dask.run_dataset(client, recipe, tmp_path / "many", shards=4, sensors=[data / "sensors"],
                             command=program)
     assert files_of(tmp_path / "many") == files_of(tmp_path / "one")
 
