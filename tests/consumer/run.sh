@@ -12,6 +12,7 @@ diff <(sed -n '/^```cpp$/,/^```$/p' "$source/README.md" | sed '1d;$d') <(tail -n
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 
 cmake -S "$source/tests/consumer" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+  -DPIRSIM_VERSION="$(sed -nE 's/^project\(pirsim VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")" \
   -DPIRSIM_INCLUDE_DIR="$scratch/prefix/include" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 cmake --build "$scratch/build" --parallel 2 >/dev/null
 # The README's CMakeLists.txt, as it stands there.

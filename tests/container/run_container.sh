@@ -26,10 +26,14 @@ fi
 
 for script in "$recipes"/install_*; do sh -n "$script"; done
 # Every instruction is one that the format knows, and what is copied is there.
-awk '/^[[:space:]]*(#|$)/ {next} !/^(FROM|COPY|RUN|ENV|WORKDIR|ENTRYPOINT|CMD) / {print "Dockerfile:" NR ": " $0; bad = 1} END {exit bad}' \
-  $recipes/Dockerfile
+awk '/^[[:space:]]*(#|$)/ {next} !/^(    |(ARG|FROM|COPY|RUN|ENV|WORKDIR|ENTRYPOINT|CMD) )/ {print "Dockerfile:" NR ": " $0; bad = 1} END {exit bad}' \
+  $recipes/Dockerfile $recipes/from_package/Dockerfile
 awk '/^%/ && !/^%(files|post|environment|runscript|test)( from [a-z]+)?$/ {print "pirsim.def:" NR ": " $0; bad = 1} END {exit bad}' \
-  $recipes/pirsim.def
+  $recipes/pirsim.def $recipes/from_package/pirsim.def
+# One base for all, by its digest.
+[ "$(grep -rhoE 'debian@sha256:[0-9a-f]+' $recipes | sort -u | grep -cE '@sha256:[0-9a-f]{64}$')" = 1 ] ||
+  { say "the recipes don't share a base image with a digest"; exit 1; }
+! grep -rnE '^(FROM|From:) *debian:' $recipes || { say "a base image without its digest"; exit 1; }
 for file in tools/container/install_pirsim tools/container/install_runtime tools/install_deps; do
   [ -x "$file" ] || { say "$file is missing or can't be run"; exit 1; }
 done

@@ -14,6 +14,7 @@ if ! command -v dpkg-shlibdeps >/dev/null; then
 fi
 packages=$scratch/packages
 "$source/tools/package" "$build" "$packages" >"$scratch/log" 2>&1 || { tail -20 "$scratch/log" >&2; exit 1; }
+version=$(sed -nE 's/^project\(pirsim VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")
 archive=$(ls "$packages"/pirsim-[0-9]*.tar.gz)
 command=$(ls "$packages"/pirsim_*.deb) libraries=$(ls "$packages"/libpirsim-dev_*.deb)
 if git -C "$source" rev-parse HEAD >/dev/null 2>&1; then
@@ -65,10 +66,13 @@ content >"$scratch/before"
 inside '
   add /try/pirsim.deb
   pirsim --version
-  data=/usr/share/pirsim
+  test "$(pirsim data studyA.yaml)" = /usr/share/pirsim/studies/studyA.yaml
+  for text in copyright third_party/licences.toml third_party/licences/nlopt.txt third_party/three/LICENSE; do
+    test -s /usr/share/doc/pirsim/$text
+  done
   cd /try
-  pirsim check -q --scene $data/rooms/meeting_room.gltf --script $data/studies/studyA.yaml
-  pirsim -q --scene $data/rooms/meeting_room.gltf --script $data/studies/studyA.yaml -o rows.csv'
+  pirsim check -q --scene meeting_room.gltf --script studyA.yaml
+  pirsim -q --scene meeting_room.gltf --script studyA.yaml -o rows.csv'
 data="$source/data"
 "$build/pirsim" -q --scene "$data/rooms/meeting_room.gltf" --script "$data/studies/studyA.yaml" |
   cmp - "$scratch/root/try/rows.csv"
@@ -82,7 +86,7 @@ inside '
   add /try/pirsim.deb /try/libpirsim-dev.deb g++ cmake make
   cd /try
   g++ -std=c++20 main.cpp -o by_pkg_config $(pkg-config --static --cflags --libs pirsim)
-  printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(user CXX)" "find_package(pirsim 0.1 REQUIRED)" \
+  printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(user CXX)" "find_package(pirsim '"$version"' REQUIRED)" \
     "add_executable(by_cmake main.cpp)" "target_link_libraries(by_cmake PRIVATE pirsim::reconcile)" >CMakeLists.txt
   cmake -B user >/dev/null && cmake --build user >/dev/null
   data=/usr/share/pirsim
