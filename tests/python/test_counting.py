@@ -239,6 +239,7 @@ def test_logs_in_any_form(load, tmp_path):
 
 @pytest.mark.parametrize("forward", [[], ["--forward"]])
 def test_a_log_is_counted_as_on_the_command_line(forward, load, command, tmp_path):
+    pytest.importorskip("pandas")
     counter = load(random_counter((2, 3, 2)))
     write_log(tmp_path / "log.csv")
     printed = command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward)

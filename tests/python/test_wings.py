@@ -51,6 +51,7 @@ def test_rooms_of_a_recipe_are_scenes(recipe, data, tmp_path):
 
 
 def test_reconcile_equals_the_command_line(room, study_a, command, tmp_path):
+    pytest.importorskip("pandas")
     changes = {"trials.for_each.seat": ["S3", "S8"], "replicates": 1}
     script = pirsim.read_script(study_a, set=changes)
     pirsim.write_script(script, tmp_path / "study.yaml")
