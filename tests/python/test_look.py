@@ -115,7 +115,8 @@ sets:
   - id: as built
   - {id: nobody, sensors: [{model: EKMC1601111, position_m: [0.5, 2.6, -0.5], yaw_deg: 0, tilt_deg: -80}]}
 """)
-    found = pirsim.placements(room, tmp_path / "light.yaml")
+    with pytest.warns(pirsim.InputWarning, match="sees the target nowhere"):
+        found = pirsim.placements(room, tmp_path / "light.yaml")
     best, blind = found.ranked
     assert best.set == "as built" and blind.set == "nobody"
     assert best.light.false_offs < blind.light.false_offs
