@@ -34,8 +34,8 @@ from .specs import Diagnostic, InputFile
 __all__ = ["run_dataset", "run_study"]
 
 Progress = Callable[[int, int], None]
-_DIAGNOSTIC = re.compile(r"^(?:(?P<file>.+?)(?::(?P<line>\d+):(?P<column>\d+))?: )?(?P<severity>error|warning): (?P<text>.*)$",
-                         re.MULTILINE)
+_DIAGNOSTIC = re.compile(r"^(?:(?P<file>.+?)(?::(?P<line>\d+):(?P<column>\d+))?: )?"
+                         r"(?P<severity>error|warning): (?P<text>.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
