@@ -5,7 +5,7 @@
 
 namespace pirsim {
 
-[[nodiscard]] std::string version();       ///< "0.1.0"
+[[nodiscard]] std::string version();       ///< "0.2.0"
 [[nodiscard]] std::string git_revision();  ///< of the source at configure time, "unknown" outside a checkout
 [[nodiscard]] std::string compiler();      ///< "GNU 12.2.0 RelWithDebInfo"
 

@@ -10,13 +10,13 @@ class Pirsim(CMakePackage):
 
     homepage = "https://doi.org/10.3390/s21238078"
     # The source archive that CPack makes lies where `spack install` is typed.
-    url = f"file://{os.getcwd()}/pirsim-0.1.0.tar.gz"
+    url = f"file://{os.getcwd()}/pirsim-0.2.0.tar.gz"
     manual_download = True
 
     license("Apache-2.0", checked_by="pirsim")
 
     # No checksum: the archive tells its revision. `spack install --no-checksum pirsim`.
-    version("0.1.0")
+    version("0.2.0")
 
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
