@@ -375,11 +375,12 @@ def flat():
         scene.box("wall %d" % number, structure, plaster, low, high)
     scene.node("door", structure, at=[0, 0, -4.0], turned=rotation(-90),
                mark={"type": "entrance", "id": "door", "width_m": DOOR_WIDTH, "outside_m": 1.5})
-    for name, at, yaw, hinge, state in (("front", [0, 0, -4.0], -90, "left", "shut"),
-                                        ("bath", [5.25, 0, -back], 0, "left", "habit"),
-                                        ("bedroom", [1.95, 0, -back], 0, "right", "habit")):
+    # The bedroom's opens so wide that one passes between it and the bed, to the bed's far side.
+    for name, at, yaw, hinge, state, wide in (("front", [0, 0, -4.0], -90, "left", "shut", {}),
+                                              ("bath", [5.25, 0, -back], 0, "left", "habit", {}),
+                                              ("bedroom", [1.95, 0, -back], 0, "right", "habit", {"open_deg": 140})):
         scene.node(name + " door", structure, at=at, turned=rotation(yaw),
-                   mark={"type": "door", "id": name, "width_m": 0.88, "hinge": hinge, "state": state})
+                   mark={"type": "door", "id": name, "width_m": 0.88, "hinge": hinge, "state": state} | wide)
     for name, kind, low, high in (
             ("sofa", fabric, (1.2, 0, -0.9), (3.2, 0.42, -0.02)),
             ("sofa back", fabric, (1.2, 0.42, -0.22), (3.2, 0.85, -0.02)),

@@ -107,8 +107,9 @@ struct ShippedFile {
 /// All of it, by kind and then by name. Of files with one name the first folder's counts.
 [[nodiscard]] std::vector<ShippedFile> shipped_files(std::span<const std::filesystem::path> data_directories = {});
 
-/// The file itself if it exists or its folder is named, else the shipped one of that kind and name. Throws Error(io),
-/// with the nearest name, if there is neither.
+/// The file itself if it exists, else the shipped one of that kind and name. Throws Error(io), with the nearest name,
+/// if there is neither, and where a folder is named that lacks a shipped one. A file of any other folder is left to
+/// whoever opens it.
 [[nodiscard]] std::filesystem::path find_file(const std::filesystem::path& file, DataKind kind,
                                               std::span<const std::filesystem::path> data_directories = {});
 

@@ -1,11 +1,13 @@
 #include "studies/home_outlook.hpp"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <iomanip>
 #include <ostream>
 
 #include "core/grouped_warnings.hpp"
 #include "core/text.hpp"
+#include "pirsim/geometry.hpp"
 #include "schema/clock.hpp"
 #include "sim/home_plan.hpp"
 
@@ -45,6 +47,37 @@ void print_resident(std::ostream& out, const ExpectedResident& resident) {
     out << (i == order.front() ? " " : ", ") << sim::manner_of(activity_of(i)).phase << ' '
         << resident.mean_s[i] / 3600.0;
   out << '\n';
+}
+
+/// The place of somebody else over which a resident gets into their own bed, or nullptr.
+const PlaceSpec* place_between(const SceneSpec& scene, const std::string& own, const sim::LyingPlan& plan) {
+  constexpr double beside_m = 0.4;  // assumed: half a sleeper's width and some (0.3-0.5)
+  const auto bed = std::ranges::find(scene.places, own, &PlaceSpec::id);
+  const Vec2 from = floor_point(bed->world_from_place.origin), to = plan.edge.stand(plan.edge.place.world_from_seat);
+  const Vec2 along = glm::normalize(to - from);
+  for (const PlaceSpec& other : scene.places) {
+    if (&other == &*bed || other.posture != PlacePosture::lie) continue;
+    const Vec2 away = floor_point(other.world_from_place.origin) - from;
+    const double ahead_m = glm::dot(away, along);
+    if (ahead_m > beside_m && ahead_m < glm::distance(from, to) && glm::distance(away, ahead_m * along) < beside_m)
+      return &other;
+  }
+  return nullptr;
+}
+
+/// Who can't get out while the other one sleeps.
+void warn_of_beds(const sim::CompiledStudy& study, const sim::TrialModel& trial, Diagnostics& told) {
+  for (const sim::PersonModel& person : trial.people) {
+    if (!person.spec.part || person.spec.part->part != SchedulePart::resident) continue;
+    const std::string& own = person.spec.part->seat;
+    const auto plan = person.beds.find(own);
+    const PlaceSpec* between = plan == person.beds.end() ? nullptr : place_between(study.scene(), own, plan->second);
+    if (between == nullptr) continue;
+    told.warning(
+        {study.scene().name},
+        "'" + person.spec.id + "' gets into '" + own + "' over '" + between->id +
+            "', and stays in bed while somebody sleeps there: no way leads to a place to stand at its own side");
+  }
 }
 
 }  // namespace
@@ -100,6 +133,7 @@ std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
   }
   Diagnostics told;
   lacking.tell(told);
+  warn_of_beds(study, *home, told);
   return told.warnings();
 }
 

@@ -57,6 +57,11 @@ class Shipped(unittest.TestCase):
                                          DATA / "studies/studyA.yaml", *SHORT, cwd=self.folder))
         self.assertGreater(by_name.count("\n"), 180)  # a second each
 
+    def test_a_folder_of_the_repository_that_is_not_here_is_told(self):
+        told = pirsim("check", "--scene", "data/rooms/flat.gltf", code=4, cwd=self.folder)
+        self.assertIn("data/rooms/flat.gltf: error: no such file; 'flat.gltf' without a folder is a shipped one", told)
+        self.assertNotIn("shipped", pirsim("check", "--scene", "data/rooms/mine.gltf", code=4, cwd=self.folder))
+
     def test_every_command_that_reads_a_kind_takes_its_names(self):
         study = "--scene", "meeting_room.gltf", "--script", "studyA.yaml"
         for args in (("check", *study, "-q"), ("run", *study, "--print-config"), ("preview", *study, "-o", "a.png", "-q"),

@@ -64,8 +64,13 @@ std::vector<ShippedFile> shipped_files(std::span<const fs::path> data_directorie
 
 fs::path find_file(const fs::path& file, DataKind kind, std::span<const fs::path> data_directories) {
   std::error_code fault;
-  if (file.has_parent_path() || fs::exists(file, fault)) return file;
+  if (fs::exists(file, fault)) return file;
   const auto files = files_of(of(kind), data_folders(data_directories));
+  if (file.has_parent_path()) {
+    const std::string bare = file.filename().string();
+    if (!files.contains(bare)) return file;
+    throw Error(ErrorCode::io, Where{file.string()}, "no such file; '" + bare + "' without a folder is a shipped one");
+  }
   const std::string name = file.string();
   if (const auto shipped = files.find(name); shipped != files.end()) return shipped->second;
   std::vector<std::string> names;

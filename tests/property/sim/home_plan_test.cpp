@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "pirsim/look.hpp"
 #include "pirsim/study.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/home_draw.hpp"
@@ -71,4 +72,31 @@ TEST_CASE("residents lie in their beds at four, and are where the day has them b
   }
   // Each of a few ways in and out takes a dozen seconds.
   CHECK(right > 86400 - 300);
+}
+
+TEST_CASE("each of a couple gets out of bed at their own side, while the other one sleeps", "[people][seconds]") {
+  const Model model = flat();
+  const auto over = [](const Model& checked) {
+    return std::ranges::count_if(check_study(checked).warnings, [](const Issue& warning) {
+      return warning.message.find("gets into 'bed_right' over 'bed_left'") != std::string::npos;
+    });
+  };
+  CHECK(over(model) == 0);
+  // Day 1 has somebody up at six, beside somebody who sleeps: whoever goes to the toilet is in the bathroom then.
+  const RunResult result = run_once(model, 0, Record::samples, Trace::none, Occupants::told);
+  std::map<std::string, int> visits, in_bath;
+  std::map<std::string, std::string> doing;
+  std::map<std::string, bool> was_there;
+  for (const OccupantRow& row : result.occupants) {
+    if (row.activity == "toilet" && doing[row.person] != "toilet") ++visits[row.person], was_there[row.person] = false;
+    if (row.activity == "toilet" && row.area == "bath" && !was_there[row.person])
+      ++in_bath[row.person], was_there[row.person] = true;
+    doing[row.person] = row.activity;
+  }
+  CHECK(visits.size() == 2);
+  CHECK(visits == in_bath);
+  // A twin: the bedroom's door, open at a right angle, shuts off the bed's far side.
+  SceneSpec narrow = test::shipped_scene("flat.gltf");
+  std::ranges::find(narrow.doors, "bedroom", &DoorSpec::id)->open_deg = 90.0;
+  CHECK(over(compile(std::move(narrow), test::shipped_script("flat_week.yaml", {"sensing.response=zones"}))) == 1);
 }
