@@ -80,7 +80,8 @@ class Shipped(unittest.TestCase):
 
     def test_a_folder_is_meant_as_it_is_given(self):
         told = pirsim("check", "--scene", "./meeting_room.gltf", "--script", "studyA.yaml", code=4, cwd=self.folder)
-        self.assertEqual(told, "./meeting_room.gltf: error: no such file\n")
+        self.assertEqual(told, "./meeting_room.gltf: error: no such file; 'meeting_room.gltf' without a folder is a shipped "
+                               "one\n")
 
     def test_an_output_may_be_called_as_a_shipped_file_is(self):
         pirsim("export", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", "-o", "meeting_room.gltf", "-q",
