@@ -33,7 +33,7 @@ void suggest(const Inputs& inputs, const CheckOptions& options) {
   const std::string name = io::name_of_input(inputs.scene);
   const std::string text = [&] {
     const Progress progress({.what = "looking for floors and rooms in " + name}, inputs.verbosity);
-    io::ModelParts model = io::read_model_parts(inputs.scene);
+    io::ModelParts model = io::read_model_parts(found(io::DataKind::rooms, inputs.scene));
     tell(model.warnings, inputs.verbosity);
     return studies::to_yaml(studies::suggest(std::move(model), options.floor_m, name), name);
   }();

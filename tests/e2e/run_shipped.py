@@ -64,7 +64,8 @@ class Shipped(unittest.TestCase):
 
     def test_every_command_that_reads_a_kind_takes_its_names(self):
         study = "--scene", "meeting_room.gltf", "--script", "studyA.yaml"
-        for args in (("check", *study, "-q"), ("run", *study, "--print-config"), ("preview", *study, "-o", "a.png", "-q"),
+        for args in (("check", *study, "-q"), ("check", *study[:2], "--suggest"), ("run", *study, "--print-config"),
+                     ("preview", *study, "-o", "a.png", "-q"),
                      ("view", *study, "--to", "5", "--coverage", "studyB.yaml", "-o", "run.html", "-q"),
                      ("coverage", *study[:3], "studyB.yaml", "--set", "spacing_m=1", "-o", "maps", "-q"),
                      ("walktest", *study[:3], "walk_test.yaml", "--set", "spacing_m=2", "-o", "walk.csv", "-q"),
@@ -80,8 +81,8 @@ class Shipped(unittest.TestCase):
 
     def test_a_folder_is_meant_as_it_is_given(self):
         told = pirsim("check", "--scene", "./meeting_room.gltf", "--script", "studyA.yaml", code=4, cwd=self.folder)
-        self.assertEqual(told, "./meeting_room.gltf: error: no such file; 'meeting_room.gltf' without a folder is a shipped "
-                               "one\n")
+        self.assertEqual(told, "./meeting_room.gltf: error: no such file; 'meeting_room.gltf' without a folder is a "
+                               "shipped one\n")
 
     def test_an_output_may_be_called_as_a_shipped_file_is(self):
         pirsim("export", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", "-o", "meeting_room.gltf", "-q",
