@@ -40,7 +40,8 @@ def run_example(pirsim, source, folder):
     assert "--budget 0.05" in commands, commands
     (folder / "bin").mkdir()
     (folder / "bin/pirsim").symlink_to(pathlib.Path(pirsim).resolve())
-    environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
+    environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}",
+                   "PIRSIM_DATA_DIR": str(folder / "data")}  # whose Study A is the short one
     result = subprocess.run(["bash", "-euo", "pipefail", "-c", commands], cwd=folder, env=environment, capture_output=True,
                             text=True)
     report = json.loads((folder / "found/report.json").read_text())
