@@ -78,7 +78,11 @@ void remark_deaf_seats(const ControlOptions& options, const control::RuleSpec& r
   const SceneSpec& scene = model.scene();
   const Areas areas(scene);
   const WorkReport work = check_study(model).work;
+  const auto is_here = [&](const std::string& sensor) {
+    return std::ranges::find(scene.sensors, sensor, &SensorSpec::id) != scene.sensors.end();
+  };
   for (const control::LightSpec& light : rule.lights) {
+    if (!std::ranges::all_of(light.sensors, is_here)) continue;  // the rows are of other sensors than the scene's
     std::vector<std::string> unnoticed;
     for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
       const SeatSpec& place = *std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);

@@ -26,6 +26,7 @@ void write(const CountOptions& options, const calibrate::LogCounts& counts) {
   io::AtomicFile file(options.output);
   calibrate::write_counts(file.stream(), counts);
   file.commit();
+  if (options.verbosity != Verbosity::quiet) std::cerr << "wrote " << options.output.string() << '\n';
 }
 
 void count(const CountOptions& options) {

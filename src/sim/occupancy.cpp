@@ -221,23 +221,19 @@ class Visits {
     return known->second;
   }
   [[nodiscard]] double rehearse_move(std::size_t person, std::size_t from, std::size_t to) const {
-    constexpr double to_settle_s = 15.0, longest_s = 600.0, usual_s = 5.0;
-    auto plan = std::make_shared<DayPlan>(trial_.people.size());
-    std::vector<ScriptedAction>& actions = (*plan)[person];
-    actions.push_back(untimed(action::Appear{stand_of(from, person), 0.0}));
-    for (Action& action : taking(from, person)) actions.push_back(untimed(std::move(action)));
-    actions.push_back(
-        untimed(places_.is_seat(from) ? Action(action::Work{until_next_s}) : Action(action::Wait{until_next_s})));
+    double reached_s = to_settle_s + 5.0;  // assumed, of who doesn't get there alone (2-10)
+    std::vector<ScriptedAction> actions{untimed(action::Appear{stand_of(from, person), 0.0})};
+    settle(from, person, actions);
     const std::size_t first = actions.size();
     for (Action& action : taking(to, person)) actions.push_back(untimed(std::move(action)));
     actions[first].at_s = to_settle_s;
-    Actor actor(study_, run_, static_cast<std::uint32_t>(person), plan);
-    for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
-      actor.advance(study_, tick, {}, {});
-      const double now_s = static_cast<double>(tick) * study_.tick_s();
-      if (now_s > to_settle_s && is_in(actor, places_.parts[to])) return now_s - to_settle_s;
-    }
-    return usual_s;  // of a part that is left before it is reached: nothing to be tried out
+    bool is_there = false;
+    try_out(person, std::move(actions), [&](const Actor& actor, double now_s) {
+      if (is_there || now_s <= to_settle_s || !is_in(actor, places_.parts[to])) return;
+      is_there = true;
+      reached_s = now_s;
+    });
+    return reached_s - to_settle_s;
   }
 
   /// Is somebody over a part of the floor?
@@ -247,30 +243,43 @@ class Visits {
 
   /// The person comes, takes the place and goes again, as in the run but alone.
   [[nodiscard]] Crossings rehearse(std::size_t person, std::uint32_t door, std::size_t place) const {
-    constexpr double to_settle_s = 15.0, slow_m_s = 0.5, longest_s = 600.0;
+    constexpr double slow_m_s = 0.5;
     const std::string& id = occupancy_.entrances[door];
     const EntranceSpec& entrance = *std::ranges::find(study_.scene().entrances, id, &EntranceSpec::id);
     const double way_m = glm::distance(outside_of(entrance), stand_of(place, person));
     const double leaves_s = to_settle_s + way_m / slow_m_s;
-    auto plan = std::make_shared<DayPlan>(trial_.people.size());
-    std::vector<ScriptedAction>& actions = (*plan)[person];
-    actions.push_back(untimed(action::Enter{id}));
-    for (Action& action : taking(place, person)) actions.push_back(untimed(std::move(action)));
-    if (places_.is_seat(place)) actions.push_back(untimed(action::Work{until_next_s}));
-    if (!places_.is_seat(place)) actions.push_back(untimed(action::Wait{until_next_s}));
+    std::vector<ScriptedAction> actions{untimed(action::Enter{id})};
+    settle(place, person, actions);
     actions.push_back(timed(action::Leave{id}, leaves_s));
-    Actor actor(study_, run_, static_cast<std::uint32_t>(person), plan);
     Crossings found;
     bool was_inside = false;
-    for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
-      actor.advance(study_, tick, {}, {});
+    try_out(person, std::move(actions), [&](const Actor& actor, double now_s) {
       const bool is_inside = is_in(actor, places_.parts[place]);
-      const double now_s = static_cast<double>(tick) * study_.tick_s();
       if (is_inside && !was_inside && now_s < leaves_s) found.in_s = now_s;
       if (!is_inside && was_inside && now_s > leaves_s) found.out_s = now_s - leaves_s;
       was_inside = is_inside;
-    }
+    });
     return found;
+  }
+
+  static constexpr double to_settle_s = 15.0;
+  /// Takes the place and stays there until something else is called for.
+  void settle(std::size_t place, std::size_t person, std::vector<ScriptedAction>& actions) const {
+    for (Action& action : taking(place, person)) actions.push_back(untimed(std::move(action)));
+    actions.push_back(
+        untimed(places_.is_seat(place) ? Action(action::Work{until_next_s}) : Action(action::Wait{until_next_s})));
+  }
+  /// The person does it alone; told(actor, seconds) after every tick.
+  template <typename Told>
+  void try_out(std::size_t person, std::vector<ScriptedAction> actions, const Told& told) const {
+    constexpr double longest_s = 600.0;
+    auto plan = std::make_shared<DayPlan>(trial_.people.size());
+    (*plan)[person] = std::move(actions);
+    Actor actor(study_, run_, static_cast<std::uint32_t>(person), plan);
+    for (std::int64_t tick = 1; !actor.done() && static_cast<double>(tick) * study_.tick_s() < longest_s; ++tick) {
+      actor.advance(study_, tick, {}, {});
+      told(actor, static_cast<double>(tick) * study_.tick_s());
+    }
   }
 
   const CompiledStudy& study_;

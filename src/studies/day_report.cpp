@@ -231,7 +231,7 @@ io::MapChart DayReport::floor_chart() const {
     chart.values.push_back(shown ? std::optional(std::ceil(100.0 * minutes) / 100.0) : std::nullopt);
   }
   chart.plan = plan_of(model_->compiled().scene());
-  for (const SensorSpec& sensor : model_->scene().sensors) chart.markers.push_back(marker_of(sensor));
+  for (const SensorSpec& sensor : model_->compiled().scene().sensors) chart.markers.push_back(marker_of(sensor));
   for (const OccupantRow& row : busiest_.people) chart.people.push_back({row.person, row.place_m, 0.0});
   return chart;
 }

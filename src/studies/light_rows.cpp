@@ -15,7 +15,8 @@ constexpr std::size_t word_bits = 64;
 
 void set_bit(RowBits& bits, std::size_t row) { bits[row / word_bits] |= std::uint64_t{1} << (row % word_bits); }
 
-LightRun run_of(const RunResult& result, std::size_t n_areas, std::size_t n_sensors, bool has_areas) {
+/// Without areas all people are in the only one.
+LightRun run_of(const RunResult& result, std::size_t n_areas, std::size_t n_sensors) {
   LightRun run;
   run.n_rows = result.samples.size();
   const RowBits nothing((run.n_rows + word_bits - 1) / word_bits, 0);
@@ -24,7 +25,8 @@ LightRun run_of(const RunResult& result, std::size_t n_areas, std::size_t n_sens
   for (std::size_t row = 0; row < run.n_rows; ++row) {
     const Sample& sample = result.samples[row];
     for (std::size_t area = 0; area < n_areas; ++area) {
-      if ((has_areas ? sample.people_of_areas[area] : sample.people) > 0) set_bit(run.occupied[area], row);
+      if ((sample.people_of_areas.empty() ? sample.people : sample.people_of_areas[area]) > 0)
+        set_bit(run.occupied[area], row);
     }
     for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
       if (sample.bits[sensor] == 1) set_bit(run.moved[sensor], row);
@@ -98,7 +100,7 @@ LightRows light_rows(const SceneSpec& scene, const PlacementLightSpec& light, co
                                "the light's people: run " + std::to_string(result.replicate) + " of trial '" +
                                    result.trial + "' can't go on, and is left out: " + result.fault->message});
     } else {
-      rows.runs.push_back(run_of(result, rows.areas.size(), rows.sensors.size(), !areas.empty()));
+      rows.runs.push_back(run_of(result, rows.areas.size(), rows.sensors.size()));
     }
     done(++n_done, model.n_runs());
   });

@@ -160,6 +160,39 @@ TEST_CASE("A day's page shows the room that people were in: the mirrored one if 
   REQUIRE(doors.size() == 1);
   CHECK(doors[0].from == studies::plan_of(model.compiled().scene()).doors[0].from);
   CHECK(doors[0].from != studies::plan_of(model.scene()).doors[0].from);
+  const std::vector<io::MapChart::Marker>& sensors = std::get<io::MapChart>(*chart).markers;
+  REQUIRE(sensors.size() == model.scene().sensors.size());
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    CHECK(sensors[i].point == floor_point(model.compiled().scene().sensors[i].world_from_sensor.origin));
+}
+
+TEST_CASE("Motion is told by the number of people in the area that a sensor watches") {
+  const Model model = compile(shipped_scene("two_rooms.gltf"), shipped_script("two_rooms.yaml"));
+  const RunResult result = run_once(model, 0, Record::samples, Trace::none, Occupants::told);
+  studies::DayReport report(model);
+  report.add_run(result);
+  const io::ReportSection section = report.section("");
+  const auto is_grid = [](const io::Chart& chart) { return std::holds_alternative<io::GridChart>(chart); };
+  const io::GridChart& chart = std::get<io::GridChart>(*std::ranges::find_if(section.charts, is_grid));
+  REQUIRE(chart.rows == std::vector<std::string>{"PIR1", "PIR2"});  // of the living room, of the bedroom
+  int n_others = 0;
+  for (std::size_t sensor = 0; sensor < 2; ++sensor) {
+    for (std::size_t people = 0; people < chart.columns.size(); ++people) {
+      double rows = 0.0, moved = 0.0, rows_of_all = 0.0;
+      for (const Sample& row : result.samples) {
+        rows_of_all += static_cast<std::size_t>(row.people) == people ? 1.0 : 0.0;
+        if (static_cast<std::size_t>(row.people_of_areas[sensor]) != people) continue;
+        rows += 1.0;
+        moved += row.bits[sensor];
+      }
+      const io::GridChart::Cell& cell = chart.cells[sensor * chart.columns.size() + people];
+      CAPTURE(sensor, people);
+      REQUIRE(cell.value.has_value() == (rows > 0.0));
+      if (cell.value) CHECK(*cell.value == Approx(100.0 * moved / rows));
+      n_others += rows != rows_of_all ? 1 : 0;
+    }
+  }
+  CHECK(n_others > 2);  // people of the whole floor would tell otherwise
 }
 
 TEST_CASE("A wait's label ends with the wait, also where empty seconds are passed over") {

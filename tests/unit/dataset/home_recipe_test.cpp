@@ -153,7 +153,9 @@ rows: .csv
   CHECK(rises(rows, "door_bath") == times(once, " door_bath OPEN"));
   CHECK_THAT(content(out / "sensors.csv"), contains("1,PIR_bath,EKMC1604111,zones,") && contains(",bath\n"));
   CHECK_THAT(content(out / "areas.csv"), contains("1,living_room,"));
-  CHECK_THAT(content(out / "doors.csv"), contains("room,door,area,beyond,width_m\n") && contains("1,bath,bath,"));
+  CHECK_THAT(content(out / "doors.csv"), contains("room,door,area,beyond,width_m\n") &&
+                                             contains("1,bath,bath,living_room,") &&
+                                             contains("1,front,living_room,outside,"));
   CHECK_THAT(content(out / "rooms.csv"), contains("1,train,home,rooms/room_0001.gltf"));
 }
 
