@@ -81,7 +81,7 @@
 
   // Seen from above, x to the right and z down the page.
   function map(chart, width) {
-    const inner = width - (chart.classes.length ? 150 : 118), s = chart.spacing_m;
+    const inner = width - (chart.classes.length ? 172 : 140), s = chart.spacing_m;  // the rest is the legend's
     const x1 = chart.x0 + s * chart.columns, z1 = chart.z0 + s * chart.rows;
     const height = Math.round(inner * (z1 - chart.z0) / (x1 - chart.x0));
     const toPixels = ([x, z]) => [(x - chart.x0) / (x1 - chart.x0) * inner, (z - chart.z0) / (z1 - chart.z0) * height];
