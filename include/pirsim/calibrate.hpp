@@ -111,9 +111,13 @@ class Pool {
 /// Hours of the day that a recipe simulates.
 [[nodiscard]] Interval hours_of(const dataset::RecipeSpec& recipe);
 
-/// Those hours of each day of a log that has nine tenths of them at least; of a log without times of day all of it, as
-/// one.
-[[nodiscard]] std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& hours);
+/// What is compared of a log.
+struct LogDays {
+  std::vector<counting::Stretch> whole;  ///< the hours of each day that has nine tenths of them at least
+  std::size_t n_partial = 0;             ///< days with fewer of them, which aren't compared
+};
+/// Of a log without times of day all of it, as one.
+[[nodiscard]] LogDays days_of(const LogRows& rows, const Interval& hours);
 /// All of it, as one.
 [[nodiscard]] counting::Stretch whole_log(const LogRows& rows);
 
@@ -123,8 +127,12 @@ struct About {
   std::string recipe, log, made_by;
   Interval hours;
   std::size_t n_days = 0;     ///< of the log, that were compared
+  std::size_t n_partial = 0;  ///< days that weren't, as LogDays
   std::size_t n_counted = 0;  ///< its readings with counts
 };
+
+/// "1 day", or which of several are compared: of those with fewer than nine tenths of the hours nothing is.
+[[nodiscard]] std::string days_compared(const About& about);
 
 /// weights.csv, counter.json, calibration.json and calibration.html. Throws Error(io).
 void write_calibration(const std::filesystem::path& folder, const Calibration& calibration, const About& about);

@@ -77,7 +77,8 @@ struct RuleSpec {
 
 // What it costs.
 
-/// Over some days: a number, and the middle 90 % of what days drawn with replacement give; none for less than three.
+/// Over some days: a number, and the middle 90 % of what days drawn with replacement give; none for less than three. Of
+/// events that never came, the interval ends at three in all hours: where a chance of 5 % remains to see none.
 struct Figure {
   double value = 0.0;
   std::optional<Interval> over_days{};

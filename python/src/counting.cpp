@@ -195,7 +195,7 @@ nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings&
     const Interval hours = calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
     auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
     made = calibrate::Pool(std::move(rooms), settings, threads)
-               .calibrate(std::vector{calibrate::whole_log(log)}, calibrate::day_parts(log, hours));
+               .calibrate(std::vector{calibrate::whole_log(log)}, calibrate::days_of(log, hours).whole);
   });
   return told(std::move(made));
 }

@@ -93,7 +93,16 @@ void run(const CalibrateOptions& options) {
   const dataset::RecipeSpec recipe = dataset::with_overrides(given, overrides);
   const LogRows rows = LogWindows(log, step_s).rows();
   const Interval hours = calibrate::hours_of(recipe);
-  const std::vector<counting::Stretch> days = calibrate::day_parts(rows, hours);
+  const calibrate::LogDays days = calibrate::days_of(rows, hours);
+  const calibrate::About about{options.recipe.filename().string(),
+                               options.log.files.front().filename().string(),
+                               "pirsim " + version() + " (" + git_revision() + ")",
+                               hours,
+                               days.whole.size(),
+                               days.n_partial,
+                               counted_readings(rows)};
+  if (days.n_partial > 0 && options.pool->inputs.verbosity != Verbosity::quiet)
+    std::cerr << "of the log are compared " << calibrate::days_compared(about) << '\n';
   require_rooms(recipe, static_cast<int>(rows.sensors.size()));
   DatasetWork pool = *options.pool;
   pool.folder = options.folder / "pool";
@@ -105,11 +114,8 @@ void run(const CalibrateOptions& options) {
   counting::Settings settings;
   settings.step_s = step_s;
   const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
-                                          .calibrate(std::vector{calibrate::whole_log(rows)}, days);
-  calibrate::write_calibration(
-      options.folder, made,
-      {options.recipe.filename().string(), options.log.files.front().filename().string(),
-       "pirsim " + version() + " (" + git_revision() + ")", hours, days.size(), counted_readings(rows)});
+                                          .calibrate(std::vector{calibrate::whole_log(rows)}, days.whole);
+  calibrate::write_calibration(options.folder, made, about);
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);
 }

@@ -16,6 +16,9 @@ void add_dataset_command(CLI::App& app) {
   as_input(command.add_option("RECIPE", *file, "what the rooms, people and days are like: a YAML file"))->required();
   offer_output(command, work->folder, "DIR", "folder of the dataset");
   command.add_flag_callback(
+      "--resume", [work] { work->start = dataset::DatasetOptions::Start::resume; },
+      "keep the room-days that are there (without it, all are made anew)");
+  command.add_flag_callback(
       "--finish", [work] { work->part = DatasetWork::Part::finish; },
       "only describe what is there: tables, datapackage.json, README.md");
   offer_dataset_work(command, work);

@@ -97,9 +97,6 @@ Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, c
 void offer_dataset_work(CLI::App& command, const std::shared_ptr<DatasetWork>& work) {
   command.add_option("--shard", work->shard, "only the I-th of N parts, or auto/N from the job array")
       ->option_text("I/N");
-  command.add_flag_callback(
-      "--resume", [work] { work->start = dataset::DatasetOptions::Start::resume; },
-      "keep the room-days that are there (without it, all are made anew)");
   offer_changes(command, work->inputs, "recipe");
   offer_threads(command, work->threads);
 }

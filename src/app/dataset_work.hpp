@@ -20,7 +20,7 @@ struct DatasetWork {
   Inputs inputs;
 };
 
-/// --shard, --resume, --finish, --threads, --set, --response, --sensors and --quiet.
+/// --shard, --threads, --set, --response, --sensors and --quiet.
 void offer_dataset_work(CLI::App& command, const std::shared_ptr<DatasetWork>& work);
 
 [[nodiscard]] dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work);

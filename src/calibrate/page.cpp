@@ -174,14 +174,20 @@ std::string finding(const Calibration& calibration) {
          error;
 }
 
+std::string days_compared(const About& about) {
+  const std::string hours = "from " + hours_text(about.hours.low) + " to " + hours_text(about.hours.high);
+  if (about.n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
+  return std::to_string(about.n_days) + " of " + counted(about.n_days + about.n_partial, "day") + ", " + hours +
+         "; of the others it has less than nine tenths of these hours";
+}
+
 io::Report page(const Calibration& calibration, const About& about) {
   io::Report report;
   report.title = "Calibration";
   report.finding = finding(calibration);
   report.paragraphs = {
-      "Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + hours_text(about.hours.low) + " to " +
-      hours_text(about.hours.high) + ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
-      ". Each room is weighed by how well its model explains the log" +
+      "Log: " + about.log + ", " + days_compared(about) + ". Recipe: " + about.recipe + ", " +
+      counted(calibration.rooms.size(), "room") + ". Each room is weighed by how well its model explains the log" +
       (about.n_counted == 0 ? std::string(".")
                             : ", and the counts of " + counted(about.n_counted, "reading") + " in it.")};
   report.sections = {error_section(calibration)};

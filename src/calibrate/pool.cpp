@@ -175,27 +175,27 @@ counting::Stretch whole_log(const LogRows& rows) {
   return stretch;
 }
 
-std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& hours) {
-  if (rows.clock == LogClock::elapsed) return {whole_log(rows)};
+LogDays days_of(const LogRows& rows, const Interval& hours) {
+  if (rows.clock == LogClock::elapsed) return {{whole_log(rows)}};
   constexpr double hour_us = 3600e6;
   constexpr std::int64_t day_us = 86'400'000'000;
-  std::vector<counting::Stretch> parts;
+  LogDays days;
   std::optional<std::int64_t> last_day;
   for (std::size_t i = 0; i < rows.n_windows(); ++i) {
     const std::int64_t local_us = rows.begin[i].local_us();
     const std::int64_t day = local_us >= 0 ? local_us / day_us : (local_us + 1) / day_us - 1;
     const double hour = static_cast<double>(local_us - day * day_us) / hour_us;
     if (hour < hours.low || hour >= hours.high) continue;
-    if (day != last_day) parts.push_back({static_cast<int>(rows.sensors.size()), {}});
+    if (day != last_day) days.whole.push_back({static_cast<int>(rows.sensors.size()), {}});
     last_day = day;
-    append(rows, i, parts.back());
+    append(rows, i, days.whole.back());
   }
   constexpr double least_share = 0.9;  // assumed: half a day has other statistics than a day
   const double whole = (hours.high - hours.low) * 3600.0 / rows.window_s;
-  std::erase_if(parts, [&](const counting::Stretch& part) {
-    return static_cast<double>(part.n_readings()) < least_share * whole;
+  days.n_partial = std::erase_if(days.whole, [&](const counting::Stretch& day) {
+    return static_cast<double>(day.n_readings()) < least_share * whole;
   });
-  return parts;
+  return days;
 }
 
 }  // namespace pirsim::calibrate

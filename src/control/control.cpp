@@ -7,6 +7,7 @@
 
 #include "control/day_sums.hpp"
 #include "control/light_switch.hpp"
+#include "core/text.hpp"
 #include "schema/areas.hpp"
 #include "schema/clock.hpp"
 
@@ -39,8 +40,8 @@ std::optional<std::size_t> find(const Names& names, const std::string& name, con
                                 const LightSpec& light, Diagnostics& faults) {
   const auto at = std::ranges::find(names, name);
   if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  faults.error(light.where, "light '" + light.id + "': the rows have no " + kind + " '" + name + "'" +
-                                (names.empty() ? "" : did_you_mean(name, names)));
+  faults.error(light.where,
+               "light '" + light.id + "': the rows have no " + kind + " '" + name + "'" + near_or_all(name, names));
   return std::nullopt;
 }
 
@@ -292,7 +293,7 @@ LightCosts Light::costs(People people) const {
     }
     at.switched_on_a_day = switched_on / n_days;
     at.lit_share = drawn.ratio(lit, hours);
-    at.false_offs_an_hour = drawn.ratio(offs, occupied);
+    at.false_offs_an_hour = drawn.rate(offs, occupied);
     at.dark_share = drawn.ratio(dark, occupied);
     at.longest_dark_s = static_cast<double>(longest_dark_[i]) * window_s_;
     const Waits& waits = waits_[i];

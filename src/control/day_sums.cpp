@@ -1,6 +1,7 @@
 #include "control/day_sums.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "pirsim/random.hpp"
@@ -26,6 +27,7 @@ Figure DrawnDays::ratio(const std::vector<double>& above, const std::vector<doub
   const double all = std::accumulate(below.begin(), below.end(), 0.0);
   if (all <= 0.0) return {};
   Figure figure{std::accumulate(above.begin(), above.end(), 0.0) / all, {}};
+  if (figure.value == 0.0) return figure;
   std::vector<double> ratios;
   for (std::size_t draw = 0; draw < times_.size() / std::max<std::size_t>(1, n_days_); ++draw) {
     double numerator = 0.0, denominator = 0.0;
@@ -41,6 +43,14 @@ Figure DrawnDays::ratio(const std::vector<double>& above, const std::vector<doub
     return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1) + 0.5)];
   };
   figure.over_days = Interval{at(0.5 - 0.5 * middle), at(0.5 + 0.5 * middle)};
+  return figure;
+}
+
+Figure DrawnDays::rate(const std::vector<double>& events, const std::vector<double>& hours) const {
+  Figure figure = ratio(events, hours);
+  const double all = std::accumulate(hours.begin(), hours.end(), 0.0);
+  if (figure.value == 0.0 && n_days_ >= fewest_days && all > 0.0)
+    figure.over_days = Interval{0.0, -std::log(0.5 - 0.5 * middle) / all};
   return figure;
 }
 

@@ -25,8 +25,12 @@ struct DaySums {
 class DrawnDays {
  public:
   explicit DrawnDays(std::size_t n_days);
-  /// The sum of `above` over that of `below`, 0 without any of that. (n_days) each.
+  /// The sum of `above` over that of `below`, 0 without any of that. (n_days) each. No interval if all of `above` is 0:
+  /// draws of it are 0, too.
   [[nodiscard]] Figure ratio(const std::vector<double>& above, const std::vector<double>& below) const;
+  /// Events an hour, as ratio(). Without events its interval ends where a chance of 5 % remains to see none, if they
+  /// come independently of each other: at 3 in all hours [Hanley1983].
+  [[nodiscard]] Figure rate(const std::vector<double>& events, const std::vector<double>& hours) const;
 
  private:
   std::size_t n_days_;

@@ -35,11 +35,6 @@ std::vector<double> told_delays(const LightCosts& light) {
   return delays;
 }
 
-/// A range from no event would say nothing.
-std::string offs_an_hour(const DelayCosts& at) {
-  return fixed(at.false_offs_an_hour.value, 2) + (at.false_offs > 0 ? range(at.false_offs_an_hour, 1.0, 2) : "");
-}
-
 std::string energy(const LightCosts& light, double hours) {
   return light.power_w > 0.0 ? fixed(a_day(light, hours) * light.power_w / 1000.0, 2) : "";
 }
@@ -69,7 +64,8 @@ io::Table table_of(const LightCosts& light) {
   for (const double delay : told_delays(light)) {
     const DelayCosts& at = light.at(delay);
     add(table, light,
-        {shortest_number(delay), std::to_string(at.false_offs), offs_an_hour(at),
+        {shortest_number(delay), std::to_string(at.false_offs),
+         fixed(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
          fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s),
          fixed(a_day(light, at.lit_h), 2), fixed(a_day(light, at.lit_empty_h), 2), fixed(at.switched_on_a_day, 1),
          time(at.mean_wait_s), energy(light, at.lit_h)});

@@ -161,7 +161,7 @@ std::string activity_fault(const PersonSpec& person, const ScriptedAction& actio
 std::string body_part_fault(const std::string& part) {
   const std::vector<std::string> parts(body_part_names.begin(), body_part_names.end());
   if (std::ranges::find(parts, part) != parts.end()) return {};
-  return "no part of the body is called '" + part + "'" + did_you_mean(part, parts);
+  return "no part of the body is called '" + part + "'" + near_or_all(part, parts);
 }
 
 std::string body_mesh_fault(const TriMesh& mesh) {

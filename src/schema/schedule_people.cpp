@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/text.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
 #include "schema/areas.hpp"
@@ -63,7 +64,7 @@ class Desks {
 
   bool require(const std::string& seat, const Where& where) {
     if (std::ranges::find(names_, seat) != names_.end()) return true;
-    diagnostics_.error(where, "schedule: seat '" + seat + "' is not in " + scene_.name + did_you_mean(seat, names_));
+    diagnostics_.error(where, "schedule: seat '" + seat + "' is not in " + scene_.name + near_or_all(seat, names_));
     return false;
   }
 
@@ -92,7 +93,7 @@ void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagn
   for (const std::string& door : schedule.entrances) {
     if (std::ranges::find(doors, door) != doors.end()) continue;
     diagnostics.error(schedule.where,
-                      "schedule: entrance '" + door + "' is not in " + scene.name + did_you_mean(door, doors));
+                      "schedule: entrance '" + door + "' is not in " + scene.name + near_or_all(door, doors));
   }
   if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
 }
@@ -109,7 +110,7 @@ void check_meetings(const ScheduleSpec& schedule, std::size_t room, const SceneS
   const std::vector<std::string> areas = ids_of(scene.areas);
   if (!meetings.area.empty() && std::ranges::find(areas, meetings.area) == areas.end()) {
     return diagnostics.error(meetings.where, "schedule: meetings: area '" + meetings.area + "' is not in " +
-                                                 scene.name + did_you_mean(meetings.area, areas));
+                                                 scene.name + near_or_all(meetings.area, areas));
   }
   const std::vector<std::string> seats = meeting_seats(schedule, room, scene);
   for (std::size_t other = 0; other < room; ++other) {
@@ -147,7 +148,7 @@ std::vector<std::string> beds_of(const HouseholdSpec& household, const SceneSpec
     if (resident.bed.empty()) continue;
     if (std::ranges::find(names, resident.bed) == names.end()) {
       diagnostics.error(resident.where, "household: bed '" + resident.bed + "' is no place for sleep in " + scene.name +
-                                            did_you_mean(resident.bed, names));
+                                            near_or_all(resident.bed, names));
     } else if (!taken.insert(resident.bed).second) {
       diagnostics.error(resident.where, "household: bed '" + resident.bed + "' is the own bed of two people");
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/text.hpp"
 #include "pir/planck.hpp"
 
 namespace pirsim::studies {
@@ -24,11 +25,13 @@ std::vector<TriMesh> take_out(SceneSpec& scene, const CoverageSpec& spec) {
     known.push_back(mesh.name.substr(0, mesh.name.find(' ')));
     known.push_back(mesh.name);
   }
+  std::ranges::sort(known);
+  known.erase(std::ranges::unique(known).begin(), known.end());
   for (std::size_t i = 0; i < spec.without.size(); ++i) {
     const std::string& name = spec.without[i];
     if (std::ranges::any_of(scene.meshes, [&](const TriMesh& mesh) { return is_called(mesh, name); })) continue;
     const Where where = i < spec.without_where.size() ? spec.without_where[i] : Where{};
-    faults.error(where, "without: " + scene.name + " has no mesh '" + name + "'" + did_you_mean(name, known));
+    faults.error(where, "without: " + scene.name + " has no mesh '" + name + "'" + near_or_all(name, known));
   }
   faults.throw_if_errors();
   const auto stays = [&](const TriMesh& mesh) {

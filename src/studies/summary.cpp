@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/text.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::studies {
@@ -98,7 +99,7 @@ void AreaSums::add(const AreaSums& other) {
 void Summary::add_run(std::string_view trial, std::span<const int> counts, std::span<const AreaSums> areas) {
   const auto index = index_of(trials_, trial);
   if (!index) {
-    throw Error(ErrorCode::usage, "summary: no trial '" + std::string(trial) + "'" + did_you_mean(trial, trials_));
+    throw Error(ErrorCode::usage, "summary: no trial '" + std::string(trial) + "'" + near_or_all(trial, trials_));
   }
   if (counts.size() != sensors_.size()) throw Error(ErrorCode::usage, "summary: expected one count a sensor");
   for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) {

@@ -72,7 +72,7 @@ class OwnRoom(unittest.TestCase):
         self.same(shards)
         gone = next((shards / "pool" / "rows").rglob("*.csv.gz"))
         gone.unlink()
-        self.calibrate(shards, "--resume", "-q")
+        self.calibrate(shards, "-q")
         self.same(shards)
 
     def test_the_verdict_is_told_and_weights_add_up(self):

@@ -200,7 +200,7 @@ def test_a_calibration_equals_the_command_lines(command, tmp_path):
     lines = (tmp_path / "log.csv").read_text().splitlines()
     counted = [lines[0] + ",people", *(line + f",{int(i > 60)}" for i, line in enumerate(lines[1:]))]
     (tmp_path / "counted.csv").write_text("\n".join(counted) + "\n")
-    command("calibrate", tmp_path / "pool.yaml", "--log", tmp_path / "counted.csv", "-q", "--resume", "-o", made)
+    command("calibrate", tmp_path / "pool.yaml", "--log", tmp_path / "counted.csv", "-q", "-o", made)
     labelled = counting.calibrate(made / "pool", tmp_path / "counted.csv").counter
     labelled.save(tmp_path / "counter.json")
     assert (tmp_path / "counter.json").read_bytes() == (made / "counter.json").read_bytes()

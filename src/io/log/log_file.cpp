@@ -320,8 +320,11 @@ void LogFile::take_event(std::int64_t us, int line) {
   const auto value = is_people ? read_count(text) : read_state(text);
   if (!value) return take_odd_event(*track, us, line);
   ++track->n_states;
-  if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value})
+  if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value}) {
+    const bool has_label = shape_.separator == ' ' && fields_.size() > n_read_fields_;
+    if (has_label) return;  // CASAS' logs tell of two activities in two lines
     return remark("same event", line, [&] { return "an event of " + quoted(name) + " stands here a second time"; });
+  }
   if (!reading_.events.add(*track, us, *value)) {
     remark("backward", line,
            [&] { return "the times of " + quoted(name) + " step back here; its events are put in order"; });

@@ -182,7 +182,7 @@ std::optional<std::size_t> CsvTable::required_column(std::string_view name, Diag
   const std::optional<std::size_t> found = column(name);
   if (!found) {
     faults.error({file_, header_.front().line, 1},
-                 "column '" + std::string(name) + "' is missing" + did_you_mean(name, names()));
+                 "column '" + std::string(name) + "' is missing" + near_or_all(name, names()));
   }
   return found;
 }

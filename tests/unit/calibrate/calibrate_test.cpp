@@ -250,13 +250,20 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
     rows.begin.push_back({(std::int64_t{22} + hour) * 3'600'000'000, 7200});
     rows.motion.push_back(static_cast<std::uint8_t>(hour % 24 >= 7 && hour % 24 < 9 ? 1 : 0));
   }
-  const std::vector<Stretch> parts = day_parts(rows, {7.0, 10.0});
+  const LogDays days = days_of(rows, {7.0, 10.0});
+  const std::vector<Stretch>& parts = days.whole;
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].motion == std::vector<std::uint8_t>{1, 1, 0});
   CHECK(parts[1].motion == std::vector<std::uint8_t>{1, 1, 0});
   CHECK(whole_log(rows).n_readings() == 48);
   // Of a day that has only some of the hours nothing is compared.
-  CHECK(day_parts(rows, {-4.0, 10.0}).size() == 0);
+  const LogDays nights = days_of(rows, {-4.0, 10.0});
+  CHECK(nights.whole.empty());
+  CHECK(nights.n_partial == 2);
+  CHECK(days.n_partial == 0);
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, 0}) == "2 days, from 7:00 to 10:00");
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, 1}) ==
+        "1 of 2 days, from 7:00 to 10:00; of the others it has less than nine tenths of these hours");
 }
 
 TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {

@@ -179,6 +179,25 @@ TEST_CASE("false-offs and dark time of memoryless motion are those of the closed
   }
 }
 
+TEST_CASE("A light that never went off on somebody may do so: its rate is bounded by the hours in which it didn't") {
+  const auto costs_of = [](int n_days, bool moves) {
+    Control control(rule_with({}, {10.0}), {{"PIR"}, {}, {}}, minute_s);
+    for (int day = 0; day < n_days; ++day) {
+      for (int i = 0; i < 600; ++i) control.add(row_of(day * 600 + i, moves || i % 60 == 0, 1), std::to_string(day));
+    }
+    return control.finish().lights.front().at(10.0);
+  };
+  const DelayCosts never = costs_of(3, true);  // 30 occupied hours
+  REQUIRE(never.false_offs == 0);
+  REQUIRE(never.false_offs_an_hour.over_days);
+  CHECK(never.false_offs_an_hour.over_days->low == 0.0);
+  // Poisson's chance of none in all hours, at the interval's upper end.
+  CHECK(std::exp(-30.0 * never.false_offs_an_hour.over_days->high) == Approx(0.05));
+  CHECK_FALSE(never.dark_share.over_days);  // draws of nothing tell nothing
+  CHECK_FALSE(costs_of(2, true).false_offs_an_hour.over_days);
+  CHECK(costs_of(3, false).false_offs_an_hour.over_days->low > 0.0);
+}
+
 TEST_CASE("several sensors, areas, unknown readings and new runs") {
   LightSpec both;
   both.together = TogetherSpec{2, 120.0};
@@ -275,7 +294,9 @@ TEST_CASE("a rule that doesn't fit the rows is refused, each fault with its ligh
   };
   refused("{sensors: [PIR3]}", "the rows have no sensor 'PIR3' (did you mean 'PIR1'?)");
   refused("{area: ofice}", "the rows have no people of an area 'ofice' (did you mean 'office'?)");
-  refused("{door: front}", "the rows have no door 'front'");
+  refused("{door: front}", "the rows have no door 'front'; there are none");
+  CHECK_THROWS_WITH(Control(parsed("  - {door: front}\n"), {{"PIR1"}, {}, {"bath", "bedroom"}}, 1.0),
+                    contains("no door 'front'; there are bath, bedroom"));
   refused("{together: {sensors: 3}}", "together: 3 sensors of 2");
 }
 
