@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Bare Debian systems to try things in, by debootstrap. To be sourced; what can't be done here ends the script with 77.
 
 # bare_system ROOT [SUITE [MIRROR [PACKAGES]]]: makes one. Without more the suite, and the mirror, of this machine.
