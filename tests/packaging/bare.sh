@@ -3,7 +3,7 @@
 
 # bare_system ROOT [SUITE [MIRROR [PACKAGES]]]: makes one. Without more the suite, and the mirror, of this machine.
 bare_system() {
-  local root=$1 suite=${2:-$(. /etc/os-release && echo "$VERSION_CODENAME")} mirror=${3:-} packages=${4:-} log
+  local root=$1 suite=${2:-$(. /etc/os-release && echo "$VERSION_CODENAME")} mirror=${3:-} packages=${4:-} components=main log
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     echo "$0: NOT tried in a bare system: that needs root and debootstrap" >&2
     exit 77
@@ -12,7 +12,8 @@ bare_system() {
     mirror=$(sed -nE 's/^deb (\[[^]]*\] )?(http[^ ]*) .*/\2/p; s/^URIs: *([^ ]*).*/\1/p' /etc/apt/sources.list \
       /etc/apt/sources.list.d/* 2>/dev/null | head -1 || true)
   fi
-  log=$(debootstrap --variant=minbase ${packages:+"--include=$packages"} "$suite" "$root" ${mirror:+"$mirror"} 2>&1) || {
+  [[ "$mirror" != *ubuntu* ]] || components=main,universe
+  log=$(debootstrap --variant=minbase --components="$components" ${packages:+"--include=$packages"} "$suite" "$root" ${mirror:+"$mirror"} 2>&1) || {
     tail -5 <<<"$log" >&2
     echo "$0: NOT tried in a bare $suite: debootstrap failed" >&2
     exit 77

@@ -11,14 +11,15 @@ trap 'rm -rf "$scratch"' EXIT
 . "$source/tests/packaging/bare.sh"
 root=$scratch/root
 bare_system "$root" "${3:-}" "${4:-}" "python3,python3-venv"
-# What the wheel and its tests need, fetched here: the bare system needs no network.
+# What the wheel and its tests need, fetched here: the bare system needs no network. pip goes by this machine's Python in
+# what pytest needs of an older one.
 mkdir "$root/try/house" "$root/try/tests"
 cp "$wheels"/pirsim-*.whl "$root/try/house"
 platforms=()
 for glibc in 2_17 2_27 2_28 2_34; do platforms+=(--platform "manylinux_${glibc}_x86_64"); done
 python3 -m pip download --quiet --disable-pip-version-check --only-binary :all: "${platforms[@]}" \
   --python-version "$(inside "$root" 'python3 -c "import sys; print(\"%d.%d\" % sys.version_info[:2])"')" \
-  -d "$root/try/house" numpy pytest
+  -d "$root/try/house" numpy pytest exceptiongroup tomli
 cp -r "$source/tests/python/first_steps.sh" "$source/data" "$source/examples" "$source/docs" "$root/try/"
 cp -r "$source/tests/python" "$source/tests/e2e" "$root/try/tests/"
 inside "$root" '
