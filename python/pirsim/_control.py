@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Mapping
 
@@ -14,6 +15,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._result import Result
+from .errors import InputWarning
 
 if TYPE_CHECKING:
     import pandas
@@ -60,7 +62,8 @@ def control(result: Result, rule: str | os.PathLike[str] | Mapping[str, Any] | N
     rule: a file, or the same keys as a dict: `{"lights": [{"area": "office", "delay_min": 5}]}`
     (docs/formats/control.md). None: one light, by any sensor. A run is a day.
 
-    Raises InputError for a rule that isn't one or doesn't fit the rows, and FileError.
+    Raises InputError for a rule that isn't one or doesn't fit the rows, and FileError. What the rows lack for it is an
+    InputWarning.
     """
     if rule is None or isinstance(rule, Mapping):
         keys: dict[str, Any] = {"pirsim_control": 1, "lights": [{}], **(rule or {})}
@@ -70,13 +73,15 @@ def control(result: Result, rule: str | os.PathLike[str] | Mapping[str, Any] | N
     run, second = np.nonzero(result.valid)
     window_s = float(result.time[0]) if len(result.time) else 1.0
     clock = [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist()
-    table, lights, rows = _core.control_light(
+    table, lights, rows, remarks = _core.control_light(
         file, text, list(result.sensors), list(result.areas), list(result.doors), window_s, run.astype(np.int32),
         np.ascontiguousarray(result.time[second], dtype=np.float64), clock,
         result.people[run, second].astype(np.int32),
         np.ascontiguousarray(result.people_of_areas[run, second], dtype=np.int32),
         np.ascontiguousarray(result.door_open[run, second], dtype=np.uint8),
         np.ascontiguousarray(result.bits[run, second], dtype=np.uint8))
+    for remark in remarks:
+        warnings.warn(remark, InputWarning, stacklevel=2)
     lit = np.zeros((*result.valid.shape, len(lights)), dtype=np.uint8)
     lit[run, second] = rows
     lit.flags.writeable = False

@@ -63,8 +63,20 @@ control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue
   return rule;
 }
 
+/// Sensors that watch its area, for each light that names none.
+void complete(control::RuleSpec& rule, const ControlOptions& options) {
+  if (options.inputs.scene.empty()) return;
+  std::vector<Issue> left_out;  // areas without sensors: told where the light stays without
+  const control::RuleSpec of_scene = rule_of_scene(options, left_out);
+  for (control::LightSpec& light : rule.lights) {
+    const auto same = std::ranges::find(of_scene.lights, light.area, &control::LightSpec::area);
+    if (light.sensors.empty() && !light.area.empty() && same != of_scene.lights.end()) light.sensors = same->sensors;
+  }
+}
+
 control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& remarks) {
   control::RuleSpec rule = options.rule.empty() ? rule_of_scene(options, remarks) : control::read_rule(options.rule);
+  if (!options.rule.empty()) complete(rule, options);
   for (control::LightSpec& light : rule.lights) {
     if (!options.delays_min.empty()) light.delays_min = options.delays_min;
   }
@@ -245,7 +257,8 @@ void add_control_command(CLI::App& app) {
       ->option_text("MINUTES...")
       ->check(CLI::Range(0.0, 1440.0));
   Inputs& inputs = options->inputs;
-  offer_input_file(command, "--scene", inputs.scene, "without a rule: a light for each of its areas; .gltf or .glb");
+  offer_input_file(command, "--scene", inputs.scene,
+                   "its areas' sensors: of a rule's lights, or of one for each area; .gltf or .glb");
   offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
   offer_input_file(command, "--script", inputs.script,
                    "with --scene: what made the rows, for links to the worst moments and seats that no sensor notices");

@@ -99,12 +99,9 @@ class Light {
   /// In the dark, after nothing.
   void begin() {
     switches_.assign(delays_min_.size(), {});
-    entered_.assign(delays_min_.size(), -1);
-    dark_for_.assign(delays_min_.size(), 0);
     last_motion_.assign(columns_.sensors.size(), never);
-    was_occupied_ = true;  // who is there already didn't come in
-    row_ = 0;
-    end_spell();
+    row_ = gap_rows_ = 0;
+    begin_people();
   }
   void begin_day() {
     days_.emplace_back().by_delay.resize(delays_min_.size());
@@ -123,19 +120,19 @@ class Light {
     const std::optional<Cue> cue = cue_of(row, people);
     if (!cue) {
       ++day.unknown;
-      begin();
+      bridge(is_night(hour));
       return unknown_bit;
     }
+    gap_rows_ = 0;
     ++day.rows;
     if (cue->occupied) {
       ++day.occupied;
       if (day.first_occupied < 0) day.first_occupied = day_row_;
       day.last_occupied = day_row_;
     }
-    const bool is_night = spec_.night && hour && is_between(*hour, spec_.night->from_h, spec_.night->to_h);
     const bool comes = cue->occupied && !was_occupied_;
     for (std::size_t i = 0; i < switches_.size(); ++i)
-      step(i, *cue, is_night ? night_rows_ : delay_rows_[i], comes, day.by_delay[i]);
+      step(i, *cue, delay_of(i, is_night(hour)), comes, day.by_delay[i]);
     was_occupied_ = cue->occupied;
     const bool is_lit = switches_[chosen_].is_lit();
     note_spell(row, cue->occupied && !is_lit);
@@ -158,6 +155,35 @@ class Light {
       longest = std::max(longest, wait);
     }
   };
+
+  /// Nothing is known of who was in the dark before.
+  void begin_people() {
+    entered_.assign(delays_min_.size(), -1);
+    dark_for_.assign(delays_min_.size(), 0);
+    was_occupied_ = true;  // who is there already didn't come in
+    end_spell();
+  }
+
+  [[nodiscard]] bool is_night(std::optional<double> hour) const {
+    return spec_.night && hour && is_between(*hour, spec_.night->from_h, spec_.night->to_h);
+  }
+  [[nodiscard]] std::int64_t delay_of(std::size_t i, bool is_night) const {
+    return is_night ? night_rows_ : delay_rows_[i];
+  }
+
+  /// A row of which nothing is known: the light goes on as if nothing moved, and anew once that lasts longer than the
+  /// delay.
+  void bridge(bool is_night) {
+    ++gap_rows_;
+    for (std::size_t i = 0; i < switches_.size(); ++i) {
+      const std::int64_t delay_rows = delay_of(i, is_night);
+      if (gap_rows_ > delay_rows)
+        switches_[i] = {};
+      else
+        switches_[i].advance(rule_, {}, delay_rows);
+    }
+    begin_people();
+  }
 
   [[nodiscard]] std::int64_t rows_of(double seconds) const { return std::llround(seconds / window_s_); }
 
@@ -235,7 +261,7 @@ class Light {
   std::vector<LightSwitch> switches_;
   std::vector<std::int64_t> entered_, dark_for_, last_motion_;
   bool was_occupied_ = true;
-  std::int64_t row_ = 0;
+  std::int64_t row_ = 0, gap_rows_ = 0;  ///< gap: rows of which nothing is known, up to now
   std::int32_t day_row_ = 0;
   std::vector<DaySums> days_;
   std::vector<Waits> waits_;
@@ -316,6 +342,7 @@ struct Control::State {
   RuleSpec rule;
   double window_s;
   People people;
+  std::size_t n_areas;
   std::vector<Light> lights;
   std::vector<std::uint8_t> lit{};
   std::vector<std::int32_t> people_of{};
@@ -325,7 +352,7 @@ struct Control::State {
 };
 
 Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People people)
-    : state_(new State{std::move(rule), window_s, people, {}}) {
+    : state_(new State{std::move(rule), window_s, people, columns.areas.size(), {}}) {
   Diagnostics faults;
   if (!(window_s > 0.0)) faults.error({state_->rule.name}, "expected rows of more than 0 s");
   for (const LightSpec& light : state_->rule.lights) {
@@ -367,6 +394,11 @@ Costs Control::finish() const {
       costs.remarks.push_back(
           {Severity::warning, light.where,
            "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
+    }
+    if (!light.area.empty() && light.sensors.empty() && state_->n_areas > 1) {
+      costs.remarks.push_back(
+          {Severity::warning, light.where,
+           "light '" + light.id + "': the sensors of all areas switch it; name its `sensors`, or say --scene"});
     }
   }
   return costs;

@@ -354,6 +354,12 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
+    const bool was_never = std::ranges::any_of(
+        light.by_delay, [](const DelayCosts& at) { return at.false_offs == 0 && at.false_offs_an_hour.over_days; });
+    if (was_never) {
+      section.paragraphs.push_back(
+          "Where it never went off on somebody, the range ends at what so many hours can't exclude.");
+    }
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
 
@@ -375,6 +381,10 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
 std::string to_text(const Costs& costs) {
   std::ostringstream text;
   text << finding_of(costs) << '\n';
+  double unknown_h = 0.0;
+  for (const LightCosts& light : costs.lights) unknown_h = std::max(unknown_h, light.unknown_h);
+  if (unknown_h > 0.0)
+    text << "Of " << fixed(unknown_h, 2) << " more hours nothing is known: they count for nothing.\n";
   if (costs.lights.size() < 2 || !know_people(costs)) return text.str();
   for (const auto& row : overview(costs).rows) {
     text << "  " << std::left << std::setw(16) << row[0] << std::setw(8) << row[1] << "off on somebody " << row[2]

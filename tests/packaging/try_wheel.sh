@@ -10,7 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 . "$source/tests/packaging/bare.sh"
 root=$scratch/root
-bare_system "$root" "${3:-}" "${4:-}" "python3,python3-venv"
+bare_system "$root" "${3:-}" "${4:-}" "python3,python3-venv,tzdata"
 # What the wheel and its tests need, fetched here: the bare system needs no network. pip goes by this machine's Python in
 # what pytest needs of an older one.
 mkdir "$root/try/house" "$root/try/tests"

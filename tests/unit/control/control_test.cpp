@@ -198,6 +198,39 @@ TEST_CASE("A light that never went off on somebody may do so: its rate is bounde
   CHECK(costs_of(3, false).false_offs_an_hour.over_days->low > 0.0);
 }
 
+TEST_CASE("A light goes on through gaps of the rows: it is lit where a motion is at most the delay ago") {
+  constexpr int n = 5000, delay = 5;
+  std::mt19937 random(3);
+  std::bernoulli_distribution moves(0.1), gap_begins(0.05), gap_goes_on(0.7);
+  Control control(rule_with({}, {double{delay}}), {{"PIR"}, {}, {}}, minute_s);
+  int last_motion = -1000, switched_on = 0, short_gaps = 0, gap = 0;
+  bool was_lit = false;
+  for (int i = 0; i < n; ++i) {
+    gap = gap_begins(random) || (gap > 0 && gap_goes_on(random)) ? gap + 1 : 0;
+    const std::uint8_t bit = gap > 0 ? 2 : moves(random) ? 1 : 0;
+    if (bit == 1) last_motion = i;
+    const bool is_lit = i - last_motion <= delay;
+    CHECK(control.add(row_of(i, bit, 0)).lit[0] == (gap > 0 ? 2 : is_lit ? 1 : 0));
+    switched_on += is_lit && !was_lit;
+    short_gaps += gap == 1 && is_lit;
+    was_lit = is_lit;
+  }
+  REQUIRE(short_gaps > 20);
+  CHECK(control.finish().lights.front().at(delay).switched_on_a_day == switched_on);
+}
+
+TEST_CASE("A light of one of several areas that names no sensors is switched by all, and says so") {
+  LightSpec kitchen;
+  kitchen.area = "kitchen";
+  const auto remarks = [&](std::vector<std::string> areas) {
+    return Control(rule_with(kitchen, {1.0}), {{"A"}, std::move(areas), {}}, minute_s).finish().remarks;
+  };
+  CHECK_THAT(remarks({"hall", "kitchen"}).at(0).message, contains("the sensors of all areas switch it"));
+  CHECK(remarks({"kitchen"}).empty());
+  kitchen.sensors = {"A"};
+  CHECK(remarks({"hall", "kitchen"}).empty());
+}
+
 TEST_CASE("several sensors, areas, unknown readings and new runs") {
   LightSpec both;
   both.together = TogetherSpec{2, 120.0};
