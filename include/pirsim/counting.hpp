@@ -84,7 +84,9 @@ struct Estimates {
   int n_counts = 1;
   std::vector<double> probabilities;  ///< (readings x counts)
   /// The least count that as many people or fewer have at least even odds of: it makes the absolute error least.
-  [[nodiscard]] int count(std::size_t reading) const;
+  [[nodiscard]] int count(std::size_t reading) const { return quantile(reading, 0.5); }
+  /// The least count that as many people or fewer have at least this share of the odds of.
+  [[nodiscard]] int quantile(std::size_t reading, double share) const;
 };
 
 [[nodiscard]] Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass);

@@ -206,6 +206,10 @@ class LogWindows {
   std::size_t n_ = 0;
 };
 
+/// Windows in which a log is counted and written if nobody asks for others: of 30 s, or in whole seconds no shorter
+/// than the log's readings are apart.
+[[nodiscard]] double usual_window_s(const Log& log);
+
 namespace io {
 /// All windows of a log. See read_log() and LogWindows.
 [[nodiscard]] LogRows read_log_rows(std::span<const std::filesystem::path> files, const LogMap& map, double window_s);

@@ -24,9 +24,8 @@ struct CalibrateOptions {
 
 /// Between the readings that rooms and log are compared by: no shorter than the log's own.
 double step_of(const CalibrateOptions& options, const Log& log) {
-  constexpr double usual_s = 30.0;
   const double interval_s = static_cast<double>(log.interval_us) * 1e-6;
-  const double step_s = options.step_s.value_or(std::max(usual_s, std::ceil(interval_s)));
+  const double step_s = options.step_s.value_or(usual_window_s(log));
   if (step_s < interval_s) {
     throw Error(ErrorCode::usage, "--step: the log has a reading every " + shortest_number(interval_s) +
                                       " s, so that nothing shorter can be told apart");

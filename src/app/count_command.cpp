@@ -40,11 +40,10 @@ void count(const CountOptions& options) {
     calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), made_by);
   if (!counts.warning.empty())
     tell({{Severity::warning, Where{options.counter.string()}, counts.warning}}, options.verbosity);
-  const auto error = calibrate::error_of(counts);
-  if (error && options.verbosity != Verbosity::quiet) {
-    std::cerr << "beside the log's own counts: wrong by " << fixed(error->mean, 3) << " people on average, over "
-              << counted(error->readings, "reading") << '\n';
-  }
+  if (options.verbosity == Verbosity::quiet) return;
+  if (const std::string sure = calibrate::how_sure(counts); !sure.empty()) std::cerr << sure << '\n';
+  if (const auto error = calibrate::error_of(counts))
+    std::cerr << "beside the log's own counts: " << calibrate::in_words(*error) << '\n';
 }
 
 }  // namespace

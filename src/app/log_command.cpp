@@ -22,7 +22,7 @@ struct LogOptions {
   std::filesystem::path map, output, report;
   std::vector<std::string> changes;
   std::string from, to, time_zone;
-  double window_s = 30.0;
+  std::optional<double> window_s;
   bool prints_map = false;
   Verbosity verbosity = Verbosity::normal;
 };
@@ -44,7 +44,7 @@ Log read(const LogOptions& options) {
 }
 
 void write_rows(const Log& log, const LogOptions& options) {
-  const LogWindows windows(log, options.window_s);
+  const LogWindows windows(log, options.window_s.value_or(usual_window_s(log)));
   io::AtomicFile file(options.output);
   io::DataWriter data(file.stream(), io::compression_of(options.output));
   const Progress progress({"writing rows"}, options.verbosity);
@@ -112,7 +112,10 @@ void add_log_command(CLI::App& app) {
       ->option_text("ZONE");
   command.add_option("--from", options->from, "local time from which it is read")->option_text("TIME");
   command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
-  command.add_option("--window", options->window_s, "length of a row's window (default: 30)")->option_text("SECONDS");
+  command
+      .add_option("--window", options->window_s,
+                  "length of a row's window (default: 30, or the log's interval if longer)")
+      ->option_text("SECONDS");
   offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
   command.add_option("--report", options->report, "a page with the days as time lines, .html")->option_text("FILE");
   command.add_flag("--print-map", options->prints_map, "print the map that it was read by, and nothing else");

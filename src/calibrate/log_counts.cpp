@@ -62,6 +62,12 @@ std::vector<io::SeriesChart::Phase> unknown_phases(const LogRows& rows, const Da
   return phases;
 }
 
+/// The middle 90 % of a reading's counts.
+Interval likely(const LogCounts& counts, std::size_t reading) {
+  return {static_cast<double>(counts.estimates.quantile(reading, 0.05)),
+          static_cast<double>(counts.estimates.quantile(reading, 0.95))};
+}
+
 io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
   const LogRows& rows = counts.rows;
   io::SeriesChart chart;
@@ -76,11 +82,13 @@ io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
     chart.rows.push_back(std::move(row));
   }
   chart.phases = unknown_phases(rows, day);
-  int last = -1;
   for (std::size_t i = day.begin; i < day.end; ++i) {
-    const int now = counts.estimates.count(i);
-    if (now != last) chart.people.push_back({static_cast<double>(i - day.begin) * rows.window_s, now});
-    last = now;
+    const io::SeriesChart::Count now{static_cast<double>(i - day.begin) * rows.window_s, counts.estimates.count(i),
+                                     likely(counts, i)};
+    const bool is_same = !chart.people.empty() && chart.people.back().people == now.people &&
+                         chart.people.back().likely->low == now.likely->low &&
+                         chart.people.back().likely->high == now.likely->high;
+    if (!is_same) chart.people.push_back(now);
   }
   if (rows.clock != LogClock::elapsed && day.begin + 1 < rows.n_windows())
     chart.first_clock = to_text(rows.begin[day.begin + 1], rows.clock).substr(0, 19);
@@ -117,14 +125,46 @@ LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pa
 }
 
 std::optional<CountError> error_of(const LogCounts& counts) {
-  double sum = 0.0, n = 0.0;
+  CountError error;
   for (std::size_t i = 0; i < counts.rows.people.size(); ++i) {
-    if (counts.rows.people[i] == log_state::unknown_count) continue;
-    sum += std::abs(counts.estimates.count(i) - counts.rows.people[i]);
-    n += 1.0;
+    const int people = counts.rows.people[i];
+    if (people == log_state::unknown_count) continue;
+    const double off = std::abs(counts.estimates.count(i) - people);
+    error.mean += off;
+    ++error.readings;
+    if (people == 0) continue;
+    error.while_occupied += off;
+    ++error.occupied;
   }
-  if (n == 0.0 || counts.rows.people_mean != LogMap::People::count) return std::nullopt;
-  return CountError{sum / n, static_cast<std::size_t>(n)};
+  if (error.readings == 0 || counts.rows.people_mean != LogMap::People::count) return std::nullopt;
+  error.mean /= static_cast<double>(error.readings);
+  if (error.occupied > 0) error.while_occupied /= static_cast<double>(error.occupied);
+  return error;
+}
+
+std::string in_words(const CountError& error) {
+  return "wrong by " + fixed(error.mean, 2) + " people on average, over " + counted(error.readings, "reading") +
+         (error.occupied == 0 || error.occupied == error.readings
+              ? ""
+              : "; by " + fixed(error.while_occupied, 2) + " over the " + std::to_string(error.occupied) +
+                    " with somebody");
+}
+
+std::string how_sure(const LogCounts& counts) {
+  constexpr double sure = 0.8;  // assumed: one of five such numbers may be another
+  std::size_t n = 0, n_sure = 0;
+  for (std::size_t i = 0; i < counts.rows.n_windows(); ++i) {
+    const int people = counts.estimates.count(i);
+    if (people == 0) continue;
+    ++n;
+    n_sure += probabilities(counts, i)[static_cast<std::size_t>(people)] >= sure ? 1U : 0U;
+  }
+  if (n == 0) return {};
+  const auto hours = [&](std::size_t readings) {
+    return fixed(static_cast<double>(readings) * counts.rows.window_s / 3600.0, 1);
+  };
+  return "Somebody is there for " + hours(n) + " h; the number is told with 80 % or more for " + hours(n_sure) +
+         " h of them.";
 }
 
 void write_counts(std::ostream& out, const LogCounts& counts) {
@@ -154,15 +194,17 @@ void write_counts_page(const std::filesystem::path& file, const LogCounts& count
   report.footer = made_by;
   std::string error;
   if (const auto known = error_of(counts))
-    error = "Compared with the log's own counts it is wrong by " + fixed(known->mean, 2) + " people on average, over " +
-            counted(known->readings, "reading") + ".";
+    error = "Compared with the log's own counts it is " + in_words(*known) + ".";
   else if (counts.expected_error && counts.warning.empty())
     error = "In rooms like this one such counts are wrong by " + fixed(counts.expected_error->low, 2) + " to " +
             fixed(counts.expected_error->high, 2) +
             " people on average, from half an hour before the first person to half an hour after the last.";
   report.finding = counts.warning + (counts.warning.empty() || error.empty() ? "" : " ") + error;
   report.paragraphs = {
-      "Log: " + log + ". Each day shows the estimated number of people above the readings with motion of each sensor."};
+      "Log: " + log +
+      ". Each day shows the estimated number of people, a line, above the readings with motion of each sensor; nine "
+      "times of ten the number is within what is pale."};
+  if (const std::string sure = how_sure(counts); !sure.empty()) report.paragraphs.push_back(sure);
   if (days.size() > most_days)
     report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
   report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});

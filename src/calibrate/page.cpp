@@ -146,7 +146,10 @@ std::string how_much_it_told(const Calibration& calibration) {
   return "The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " + all +
          (calibration.effective_rooms > hardly * static_cast<double>(calibration.rooms.size())
               ? ": the log hardly tells them apart."
-              : ".");
+              : ".") +
+         (calibration.counter.expected_error && calibration.verdict != Verdict::none_like_it
+              ? " With all rooms alike the error would be " + fixed(calibration.error_alike, 2) + "."
+              : "");
 }
 
 std::string finding(const Calibration& calibration) {
@@ -176,6 +179,9 @@ std::string finding(const Calibration& calibration) {
 
 std::string days_compared(const About& about) {
   const std::string hours = "from " + hours_text(about.hours.low) + " to " + hours_text(about.hours.high);
+  if (about.n_days == 0 && about.n_partial > 0)
+    return "none of " + counted(about.n_partial, "day") + ", since it has less than nine tenths of the time " + hours +
+           ": so there will be no verdict; let the recipe's schedule have hours that the log has";
   if (about.n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
   return std::to_string(about.n_days) + " of " + counted(about.n_days + about.n_partial, "day") + ", " + hours +
          "; of the others it has less than nine tenths of these hours";

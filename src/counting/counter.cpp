@@ -35,11 +35,11 @@ void weigh(Counter& counter, std::span<const double> log_likelihoods) {
   for (RoomModel& room : counter.rooms) room.weight /= sum;
 }
 
-int Estimates::count(std::size_t reading) const {
+int Estimates::quantile(std::size_t reading, double share) const {
   double reached = 0.0;
   for (int n = 0; n < n_counts - 1; ++n) {
     reached += probabilities[reading * size(n_counts) + size(n)];
-    if (reached >= 0.5 - 1e-9) return n;
+    if (reached >= share - 1e-9) return n;
   }
   return n_counts - 1;
 }

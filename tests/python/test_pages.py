@@ -21,7 +21,7 @@ QUICKER = {
     '"placements.yaml")': '"placements.yaml", set={"search.evaluations": 2, "spacing_m": 1.0})',
     '"walk_test.yaml")': '"walk_test.yaml", set={"spacing_m": 1.0})',
     "set=scatter)": 'set={**scatter, "replicates": 3})',
-    '/studies/studyB.yaml")\n': '/studies/studyB.yaml", set={"spacing_m": 0.5})\n',
+    '"meeting_room.gltf", "studyB.yaml")': '"meeting_room.gltf", "studyB.yaml", set={"spacing_m": 0.5})',
 }
 
 

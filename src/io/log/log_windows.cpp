@@ -41,6 +41,11 @@ struct LogWindows::Run {
   std::int32_t value;
 };
 
+double usual_window_s(const Log& log) {
+  constexpr double usual_s = 30.0;
+  return std::max(usual_s, std::ceil(static_cast<double>(log.interval_us) / static_cast<double>(us_per_s)));
+}
+
 LogWindows::LogWindows(const Log& log, double window_s) : LogWindows(log, window_s, midnight_of(log)) {}
 
 LogWindows::LogWindows(const Log& log, double window_s, std::int64_t aligned_to_us)

@@ -101,7 +101,10 @@ Json to_json(const SeriesChart& chart) {
   json["rows"] = Json::array();
   for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
   json["people"] = Json::array();
-  for (const auto& count : chart.people) json["people"].push_back({{"from_s", count.from_s}, {"n", count.people}});
+  for (const auto& count : chart.people) {
+    Json& one = json["people"].emplace_back(Json{{"from_s", count.from_s}, {"n", count.people}});
+    if (count.likely) one["low"] = count.likely->low, one["high"] = count.likely->high;
+  }
   json["phases"] = Json::array();
   for (const auto& phase : chart.phases) {
     json["phases"].push_back({{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});

@@ -8,6 +8,7 @@
 
 #include "core/tally.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/interval.hpp"
 
 namespace pirsim::io {
 
@@ -88,7 +89,8 @@ struct SeriesChart {
   double end_s = 0.0;
   struct Count {
     double from_s = 0.0;
-    int people = 0;  ///< until the next one
+    int people = 0;                    ///< until the next one
+    std::optional<Interval> likely{};  ///< drawn pale behind it
   };
   std::vector<Row> rows;
   std::vector<Count> people{};  ///< drawn above the rows; empty: nothing is

@@ -200,9 +200,9 @@
     chart.rows.forEach((row) => row.times_s.forEach((t) => seen.push({ row: row.name, t })));
     // The number of people has a strip of its own above the sensors.
     const strip = chart.people.length > 0 ? 56 : 0, gap = strip > 0 ? 10 : 0;
-    const people = chart.people.map((p, i) => ({ x: p.from_s, n: p.n,
+    const people = chart.people.map((p, i) => ({ x: p.from_s, n: p.n, low: p.low ?? p.n, high: p.high ?? p.n,
       x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s }));
-    const most = Math.max(1, ...people.map((p) => p.n));
+    const most = Math.max(1, ...people.map((p) => p.high));
     const rows = 26 * chart.rows.length + 8, height = strip + gap + rows;
     const begin = chart.first_clock ? Math.ceil(Date.parse(chart.first_clock + "Z") / 1000 - chart.window_s - 1e-6) : 0;
     // A moment, given as an expression, as the rows tell it.
@@ -223,9 +223,15 @@
         strip > 0 ? [axis("n", "left", "people", { tickCount: Math.min(most, 4), format: "d" })] : []),
       marks: [
         { type: "rect", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },
-          x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "n" }, y2: { scale: "n", value: 0 },
-          fill: { value: css("--mark") }, fillOpacity: { value: 0.45 },
-          tooltip: { signal: `datum.n + ' people, ' + ${moment("datum.x")} + ' to ' + ${moment("datum.x2")} + '${unit}'` } } } },
+          x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "low" }, y2: { scale: "n", value: 0 },
+          fill: { value: css("--mark") }, fillOpacity: { value: 0.45 } } } },
+        { type: "rule", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },
+          x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "n" }, stroke: { value: css("--mark") },
+          strokeWidth: { signal: "datum.low < datum.high ? 2 : 0" } } } },
+        { type: "rect", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },
+          x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "high" }, y2: { scale: "n", value: 0 },
+          fill: { value: css("--mark") }, fillOpacity: { value: 0.15 },
+          tooltip: { signal: `datum.n + ' people' + (datum.low < datum.high ? ' (' + datum.low + ' to ' + datum.high + ')' : '') + ', ' + ${moment("datum.x")} + ' to ' + ${moment("datum.x2")} + '${unit}'` } } } },
         { type: "rect", from: { data: "phases" }, encode: { enter: { x: { scale: "x", field: "from_s" },
           x2: { scale: "x", field: "to_s" }, y: { value: 0 }, y2: { signal: "height" }, fill: { value: css("--mark") },
           fillOpacity: { value: 0.1 },

@@ -266,6 +266,29 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
         "1 of 2 days, from 7:00 to 10:00; of the others it has less than nine tenths of these hours");
 }
 
+TEST_CASE("Counts say how far off they are, and for how long they are sure") {
+  LogCounts counts;
+  counts.rows.sensors = {"a"};
+  counts.rows.window_s = 1800.0;
+  counts.rows.people = {0, 2, log_state::unknown_count, 1};
+  for (int i = 0; i < 4; ++i) counts.rows.begin.push_back({i * std::int64_t{1'800'000'000}, 0});
+  counts.estimates = {3,
+                      {0.9, 0.1, 0.0,  //
+                       0.1, 0.8, 0.1,  //
+                       0.0, 0.5, 0.5,  //
+                       0.1, 0.3, 0.6}};
+  const auto error = error_of(counts);  // of 0, 1, (1), 2
+  REQUIRE(error);
+  CHECK(error->mean == Approx(2.0 / 3.0));
+  CHECK(error->while_occupied == Approx(1.0));
+  CHECK(in_words(*error) == "wrong by 0.67 people on average, over 3 readings; by 1.00 over the 2 with somebody");
+  CHECK(how_sure(counts) == "Somebody is there for 1.5 h; the number is told with 80 % or more for 0.5 h of them.");
+  CHECK(counts.estimates.quantile(1, 0.05) == 0);
+  CHECK(counts.estimates.quantile(1, 0.95) == 2);
+  counts.estimates = {2, {1, 0, 1, 0, 1, 0, 1, 0}};
+  CHECK(how_sure(counts).empty());
+}
+
 TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {
   const TemporaryFolder folder;
   const auto file =
