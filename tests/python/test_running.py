@@ -59,6 +59,15 @@ def test_threads_share_a_model(model):
     assert len(results) == 4 and all(np.array_equal(bits, expected) for bits in results)
 
 
+@pytest.fixture
+def interruptible():
+    """Also where a shell began the tests in the background, with Ctrl-C ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("work", ["run", "trace", "coverage", "walk_test"])
 def test_ctrl_c_ends_long_work(work, room, study_a, data):
     model = pirsim.compile(room, study_a, set={"replicates": 100_000})
