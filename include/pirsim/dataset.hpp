@@ -97,18 +97,21 @@ struct RecipeSpec {
   std::vector<Export> exports;
   std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
   std::filesystem::path file;
-  std::vector<std::string> overrides;  ///< "sensing.response=zones"
-  std::string given;                   ///< the file's content
-  std::string text;                    ///< the file's, and a comment for each override
-  std::vector<int> originals{};        ///< follows from draw_by
+  std::vector<std::string> overrides;                     ///< "sensing.response=zones"
+  std::string given;                                      ///< the file's content
+  std::string text;                                       ///< the file's, and a comment for each override
+  std::vector<int> originals{};                           ///< follows from draw_by
+  std::vector<std::filesystem::path> data_directories{};  ///< where shipped scenes are looked for
   [[nodiscard]] int n_rooms() const;
   /// (n_rooms) which room of the ranges each one is, from 1; itself without draw_by.
   [[nodiscard]] int original_of(int room) const;
   [[nodiscard]] std::uint32_t n_room_days() const { return static_cast<std::uint32_t>(n_rooms() * days); }
 };
 
-/// Overrides are as of scripts. Throws Error (io; input: all faults with file:line:column; usage: an override).
-[[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// Overrides and folders are as of scripts. Throws Error (io; input: all faults with file:line:column; usage: an
+/// override).
+[[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                                     std::span<const std::filesystem::path> data_directories = {});
 
 /// The same recipe with more overrides, without its file being read again. Throws as read_recipe().
 [[nodiscard]] RecipeSpec with_overrides(const RecipeSpec& recipe, std::span<const std::string> more);

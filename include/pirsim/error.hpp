@@ -68,8 +68,8 @@ class Diagnostics {
   std::vector<Issue> issues_;
 };
 
-/// ` (did you mean 'X'?)` for the candidate nearest to `name` in edit distance (ties: first in order),
-/// or an empty string if none is near enough to be meant.
+/// ` (did you mean 'X'?)` for the only candidate that goes on after `name` with an underscore (`yaw`: `yaw_deg`), else
+/// for the nearest in edit distance (ties: first in order); an empty string if none is near enough to be meant.
 [[nodiscard]] std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace pirsim

@@ -39,12 +39,15 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 // Studies as YAML; the format is described in docs/formats/script.md.
 
 /// Reads and validates a script. Each override is `sensing.rays_per_zone=9`: it replaces a value before reading.
+/// The files that it names are looked for as find_beside() does, and last in these folders.
 /// Throws Error (io: no such file; input: all faults with file:line:column; usage: an override).
-[[nodiscard]] ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+[[nodiscard]] ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                                     std::span<const std::filesystem::path> data_directories = {});
 
 /// Reads a script from memory; `name` stands in messages, and its files are found from the working folder.
 [[nodiscard]] ScriptSpec parse_script(std::string_view text, const std::string& name,
-                                      std::span<const std::string> overrides = {});
+                                      std::span<const std::string> overrides = {},
+                                      std::span<const std::filesystem::path> data_directories = {});
 
 /// The script as YAML that read_script() reads back to the same spec: trials and people written out.
 [[nodiscard]] std::string to_yaml(const ScriptSpec& script);
@@ -79,9 +82,10 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 
 // Comparisons of sensor placements as YAML; the format is described in docs/formats/coverage.md.
 
-/// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
+/// Reads and validates; overrides and folders as in read_script(). Throws Error (io, input, usage).
 [[nodiscard]] PlacementSpec read_placements(const std::filesystem::path& file,
-                                            std::span<const std::string> overrides = {});
+                                            std::span<const std::string> overrides = {},
+                                            std::span<const std::filesystem::path> data_directories = {});
 
 // What is uncertain about a real room, as YAML; the format is described in docs/formats/reconcile.md.
 
@@ -112,5 +116,15 @@ struct ShippedFile {
 /// whoever opens it.
 [[nodiscard]] std::filesystem::path find_file(const std::filesystem::path& file, DataKind kind,
                                               std::span<const std::filesystem::path> data_directories = {});
+
+struct NamedFile {
+  std::filesystem::path path;  ///< beside the input that names it, or shipped
+  std::string fault;           ///< "there is no file 'counts.csv'", with what is meant; empty: there is one
+};
+
+/// A file that an input names: in `folder`, where the input lies, or else the shipped one of that kind and name. A name
+/// with a folder is that file alone.
+[[nodiscard]] NamedFile find_beside(const std::filesystem::path& folder, const std::filesystem::path& file,
+                                    DataKind kind, std::span<const std::filesystem::path> data_directories = {});
 
 }  // namespace pirsim::io

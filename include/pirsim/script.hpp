@@ -52,7 +52,8 @@ struct SensingSpec {
 /// Which cells a summary adds up, and what they are compared with.
 struct SummarySpec {
   std::vector<std::string> phases;  ///< rows in these phases count
-  std::string reference_file;       ///< CSV with measured sums, or empty; relative to the script
+  std::string reference_file;       ///< CSV with measured sums, or empty; beside the script, or shipped
+  Where reference_where;
 };
 
 /// Person-to-person and chair-to-chair variation, drawn once a run and person.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Literal, NamedTuple
 
 from . import _core
-from ._study import Overrides, PathOr, as_file, as_overrides, as_path, as_scene, folders
+from ._study import Overrides, PathOr, as_file, as_overrides, as_path, as_scene, data_directory, folders
 from .specs import Frame, Point3, Scene, Script, SensorModel
 
 
@@ -45,7 +45,7 @@ def read_scene(file: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None
 
 def read_script(file: PathOr, *, set: Overrides | None = None) -> Script:
     """Reads a script's YAML file, with trials and people written out. Raises FileError and InputError."""
-    return _core.read_script(as_file(file, "studies"), as_overrides(set))
+    return _core.read_script(as_file(file, "studies"), as_overrides(set), [data_directory])
 
 
 def write_scene(scene: Scene, file: PathOr) -> None:

@@ -738,7 +738,8 @@ class Summary:
     phases: list[str] = field(default_factory=list)
     """Rows in these phases count."""
     reference_file: str = ""
-    """CSV with measured sums, or empty; relative to the script."""
+    """CSV with measured sums, or empty; beside the script, or a shipped one."""
+    reference_where: Where = _where()
 
 
 @dataclass(slots=True)

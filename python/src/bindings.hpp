@@ -3,6 +3,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include <filesystem>
 #include <pirsim/pirsim.hpp>
 #include <string>
 #include <vector>
@@ -24,9 +25,11 @@ void add_control(nanobind::module_& module);
 struct Folders {
   std::vector<std::string> sensors, data;
 };
+[[nodiscard]] std::vector<std::filesystem::path> folders_of(const std::vector<std::string>& folders);
 [[nodiscard]] io::SceneOptions options_of(const Folders& folders);
 /// A file is read, an object of pirsim.specs is converted and checked.
 [[nodiscard]] SceneSpec scene_of(nanobind::handle scene, const Folders& folders);
-[[nodiscard]] ScriptSpec script_of(nanobind::handle script, const std::vector<std::string>& overrides);
+[[nodiscard]] ScriptSpec script_of(nanobind::handle script, const std::vector<std::string>& overrides,
+                                   const std::vector<std::string>& data);
 
 }  // namespace pirsim::python

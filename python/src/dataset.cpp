@@ -14,7 +14,7 @@ namespace {
 nb::object make_dataset(const std::string& recipe, const std::string& folder, const std::vector<std::string>& set,
                         std::vector<std::string> sensors, std::vector<std::string> data, bool resume, unsigned threads,
                         nb::handle progress) {
-  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, set);
+  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, set, folders_of(data));
   dataset::DatasetOptions options;
   options.scenes = options_of({std::move(sensors), std::move(data)});
   options.threads = threads;
@@ -37,7 +37,7 @@ nb::object make_dataset(const std::string& recipe, const std::string& folder, co
 
 nb::object room(const std::string& recipe, int number, std::vector<std::string> sensors,
                 std::vector<std::string> data) {
-  const dataset::RecipeSpec spec = dataset::read_recipe(recipe);
+  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, {}, folders_of(data));
   if (number < 1 || number > spec.n_rooms())
     throw nb::index_error(
         ("room " + std::to_string(number) + ": the recipe has rooms 1 to " + std::to_string(spec.n_rooms())).c_str());

@@ -55,9 +55,11 @@ nb::list catalogue() {
 
 }  // namespace
 
-io::SceneOptions options_of(const Folders& folders) {
-  return {{folders.sensors.begin(), folders.sensors.end()}, {folders.data.begin(), folders.data.end()}};
+std::vector<std::filesystem::path> folders_of(const std::vector<std::string>& folders) {
+  return {folders.begin(), folders.end()};
 }
+
+io::SceneOptions options_of(const Folders& folders) { return {folders_of(folders.sensors), folders_of(folders.data)}; }
 
 SceneSpec scene_of(nb::handle scene, const Folders& folders) {
   const bool has_marks = nb::isinstance<nb::tuple>(scene);
@@ -69,11 +71,13 @@ SceneSpec scene_of(nb::handle scene, const Folders& folders) {
   return io::read_scene(file, options);
 }
 
-ScriptSpec script_of(nb::handle script, const std::vector<std::string>& overrides) {
+ScriptSpec script_of(nb::handle script, const std::vector<std::string>& overrides,
+                     const std::vector<std::string>& data) {
   if (!nb::isinstance<nb::str>(script)) return checked_script(script);
   const auto file = nb::cast<std::string>(script);
+  const std::vector<std::filesystem::path> folders = folders_of(data);
   nb::gil_scoped_release release;
-  return io::read_script(file, overrides);
+  return io::read_script(file, overrides, folders);
 }
 
 void add_inputs(nb::module_& module) {
@@ -86,10 +90,10 @@ void add_inputs(nb::module_& module) {
       nb::arg("file"), nb::arg("sensors"), nb::arg("data"), "A pirsim.Scene.");
   module.def(
       "read_script",
-      [](const std::string& file, const std::vector<std::string>& overrides) {
-        return to_python(script_of(nb::cast(file), overrides));
+      [](const std::string& file, const std::vector<std::string>& overrides, const std::vector<std::string>& data) {
+        return to_python(script_of(nb::cast(file), overrides, data));
       },
-      nb::arg("file"), nb::arg("overrides"), "A pirsim.Script.");
+      nb::arg("file"), nb::arg("overrides"), nb::arg("data"), "A pirsim.Script.");
   module.def("find_file", &find_file, nb::arg("file"), nb::arg("kind"), nb::arg("data"),
              "The file, or the shipped one of that name.");
   module.def(

@@ -77,7 +77,7 @@ nb::dict check_model(const Model& model) {
 nb::dict placements(nb::handle scene, const std::string& script, const std::vector<std::string>& overrides,
                     std::vector<std::string> sensors, std::vector<std::string> data, unsigned threads,
                     nb::handle progress) {
-  const PlacementSpec spec = io::read_placements(script, overrides);
+  const PlacementSpec spec = io::read_placements(script, overrides, folders_of(data));
   const Folders folders{std::move(sensors), std::move(data)};
   const SceneSpec room = scene_of(scene, folders);
   PlacementOptions options;

@@ -87,7 +87,7 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
                          const std::vector<std::string>& overrides, std::vector<std::string> sensors,
                          std::vector<std::string> data, const Question& question, std::uint64_t seed, unsigned threads,
                          nb::handle progress) {
-  const ScriptSpec given = script_of(script, overrides);
+  const ScriptSpec given = script_of(script, overrides, data);
   const SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
   const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, given)
                                                 : reconcile::parse_measured(text, measured, scene_spec, given);

@@ -17,7 +17,7 @@ namespace {
 
 Model compile_model(nb::handle scene, nb::handle script, const std::vector<std::string>& overrides,
                     std::vector<std::string> sensors, std::vector<std::string> data) {
-  ScriptSpec script_spec = script_of(script, overrides);
+  ScriptSpec script_spec = script_of(script, overrides, data);
   SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
   nb::gil_scoped_release release;
   return compile(std::move(scene_spec), std::move(script_spec));

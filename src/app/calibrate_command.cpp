@@ -117,6 +117,7 @@ void run(const CalibrateOptions& options) {
   calibrate::write_calibration(options.folder, made, about);
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);
+  tell_written({{options.folder}}, pool.inputs.verbosity);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void suggest(const Inputs& inputs, const CheckOptions& options) {
     return require_written();
   }
   io::write_text_file(options.output, text);
-  if (inputs.verbosity != Verbosity::quiet) std::cerr << "wrote " << options.output.string() << '\n';
+  tell_written({{options.output}}, inputs.verbosity);
 }
 
 void check(const Inputs& inputs, const CheckOptions& options) {

@@ -209,6 +209,7 @@ void control_rows(const ControlOptions& options, const Source& source) {
     io::write_report(options.report, report);
   }
   outputs.finish(options);
+  tell_written({{options.output}, {options.light}, {options.schedule}, {options.report}}, options.inputs.verbosity);
 }
 
 void check_files(const ControlOptions& options) {

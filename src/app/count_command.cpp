@@ -26,7 +26,6 @@ void write(const CountOptions& options, const calibrate::LogCounts& counts) {
   io::AtomicFile file(options.output);
   calibrate::write_counts(file.stream(), counts);
   file.commit();
-  if (options.verbosity != Verbosity::quiet) std::cerr << "wrote " << options.output.string() << '\n';
 }
 
 void count(const CountOptions& options) {
@@ -38,6 +37,7 @@ void count(const CountOptions& options) {
   const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
   if (!options.report.empty())
     calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), made_by);
+  tell_written({{options.output}, {options.report}}, options.verbosity);
   if (!counts.warning.empty())
     tell({{Severity::warning, Where{options.counter.string()}, counts.warning}}, options.verbosity);
   if (options.verbosity == Verbosity::quiet) return;

@@ -67,8 +67,9 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cout << studies::to_text(map, figures, studies::area_figures_of(map, study.scene()));
   require_written();
-  std::cerr << "wrote " << (options.output / "coverage.csv").string() << " and a map of every sensor beside it"
-            << (map.sensors.size() > 1 ? ", room.png is of all of them\n" : "\n");
+  const std::string maps =
+      "a map of every sensor lies beside it" + std::string(map.sensors.size() > 1 ? ", room.png of all of them" : "");
+  tell_written({{options.output / "coverage.csv", maps}, {options.report}}, inputs.verbosity);
 }
 
 }  // namespace

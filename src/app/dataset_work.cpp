@@ -46,9 +46,9 @@ void finish(const DatasetWork& work, const dataset::RecipeSpec& recipe, const da
             const StopRequest& stop) {
   if (!dataset::finish_dataset(recipe, work.folder, options))
     stop_at(stop, "before the dataset was described; continue with --finish");
-  if (work.inputs.verbosity != Verbosity::quiet)
-    std::cerr << "wrote " << (work.folder / "datapackage.json").string() << ": " << recipe.n_rooms() << " rooms, "
-              << recipe.n_room_days() << " room-days\n";
+  tell_written({{work.folder / "datapackage.json",
+                 std::to_string(recipe.n_rooms()) + " rooms, " + std::to_string(recipe.n_room_days()) + " room-days"}},
+               work.inputs.verbosity);
 }
 
 void make(const DatasetWork& work, const dataset::RecipeSpec& recipe, const dataset::DatasetOptions& options,
@@ -72,7 +72,7 @@ void tell_what_is_missing(const DatasetWork& work, const dataset::RecipeSpec& re
 
 dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work) {
   const Progress progress({.what = "reading " + file.filename().string()}, work.inputs.verbosity);
-  return dataset::read_recipe(found(io::DataKind::recipes, file), work.inputs.overrides);
+  return dataset::read_recipe(found(io::DataKind::recipes, file), work.inputs.overrides, data_directories());
 }
 
 Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, const StopRequest& stop) {

@@ -137,7 +137,7 @@ void day(const Inputs& inputs, const DayOptions& options) {
   if (options.cleaning != "none") require_plain("--cleaning", options.cleaning);
   const std::string text = script_text(options);
   check_made_script(text, options.first_day);
-  ScriptSpec script = io::parse_script(text, no_file, inputs.overrides);
+  ScriptSpec script = io::parse_script(text, no_file, inputs.overrides, data_directories());
   if (options.action == DayOptions::Action::print_script) {
     std::cout << (inputs.overrides.empty() ? text : io::to_yaml(script));
     require_written();

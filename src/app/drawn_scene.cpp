@@ -76,7 +76,8 @@ void read_settings(const DrawOptions& options, const std::string& what, const st
 dataset::RecipeSpec recipe_to_draw_from(const DrawOptions& options) {
   if (!options.settings.empty())
     throw Error(ErrorCode::usage, "a recipe says what its rooms are like: no other options");
-  dataset::RecipeSpec recipe = dataset::read_recipe(found(io::DataKind::recipes, options.recipe));
+  dataset::RecipeSpec recipe =
+      dataset::read_recipe(found(io::DataKind::recipes, options.recipe), {}, data_directories());
   keep_inputs({{"-o", options.output}}, scenes_of(recipe));
   if (!dataset::group_of(recipe, options.number).scenes.empty()) {
     throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <iostream>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 #include "app/commands.hpp"
@@ -52,10 +52,9 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   if (!options.from.empty()) film.from_s = moment("--from", options.from, clock);
   if (!options.to.empty()) film.to_s = moment("--to", options.to, clock);
   const double length_s = write_film(model, std::move(film), options, inputs.verbosity);
-  if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run)
-              << ", " << length_s << " s\n";
-  }
+  std::ostringstream about;
+  about << model.script().name << ", trial " << model.trial_of(run) << ", " << length_s << " s";
+  tell_written({{options.output, about.str()}}, inputs.verbosity);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <iomanip>
-#include <iostream>
+#include <sstream>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/drawn_scene.hpp"
@@ -28,22 +29,23 @@ dataset::DrawnFlat draw_flat(const DrawOptions& options) {
                             scenes);
 }
 
-void print(const dataset::DrawnFlat& flat, const std::filesystem::path& file) {
+std::string about(const dataset::DrawnFlat& flat) {
+  std::ostringstream text;
   std::vector<std::string> rooms, doors;
   for (const dataset::FlatRoom& room : flat.rooms) rooms.push_back(room.id);
   for (const DoorSpec& door : flat.scene.doors) doors.push_back(door.id);
-  std::cerr << "wrote " << file.string() << ": flat " << flat.number << ", " << flat.width_m << " x " << flat.depth_m
-            << " x " << flat.height_m << " m, floor " << std::fixed << std::setprecision(2)
-            << flat.scene.floor.area_m2() << " m2, for " << flat.residents
-            << (flat.residents == 1 ? " resident" : " residents") << ", rooms" << listed(rooms) << ", doors"
-            << listed(doors) << ", sensors" << listed(flat.scene.sensors) << "; found at try " << flat.tries << '\n';
+  text << "flat " << flat.number << ", " << flat.width_m << " x " << flat.depth_m << " x " << flat.height_m
+       << " m, floor " << std::fixed << std::setprecision(2) << flat.scene.floor.area_m2() << " m2, for "
+       << flat.residents << (flat.residents == 1 ? " resident" : " residents") << ", rooms" << listed(rooms)
+       << ", doors" << listed(doors) << ", sensors" << listed(flat.scene.sensors) << "; found at try " << flat.tries;
+  return std::move(text).str();
 }
 
 void make_home(const DrawOptions& options) {
   check_scene_output(options, "flat");
   const dataset::DrawnFlat flat = draw_flat(options);
   io::write_scene(options.output, flat.scene);
-  if (options.inputs.verbosity != Verbosity::quiet) print(flat, options.output);
+  tell_written({{options.output, about(flat)}}, options.inputs.verbosity);
 }
 
 }  // namespace

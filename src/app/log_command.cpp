@@ -92,6 +92,7 @@ void run_log(const LogOptions& options) {
   }
   require_written();
   if (!options.output.empty()) write_rows(log, options);
+  tell_written({{options.output}, {options.prints_map ? std::filesystem::path() : options.report}}, options.verbosity);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ struct MergeOptions {
 ScriptSpec script_of(const MergeOptions& options) {
   if (options.script.empty()) throw Error(ErrorCode::usage, "--summary needs --script FILE, that of the shards");
   const io::Provenance made = studies::campaign_provenance(options.folder);
-  ScriptSpec script = io::read_script(found(io::DataKind::studies, options.script), options.overrides);
+  ScriptSpec script =
+      io::read_script(found(io::DataKind::studies, options.script), options.overrides, data_directories());
   script.seed = made.seed;
   script.replicates = static_cast<int>(made.study_runs / script.trials.size());
   if (io::to_yaml(script) != made.resolved_script) {
@@ -74,6 +75,7 @@ void merge(const MergeOptions& options) {
   if (options.verbosity != Verbosity::quiet) {
     std::cerr << "merged " << merged.runs.count() << " runs, " << merged.rows << " rows\n";
   }
+  tell_written({{options.output}, {options.summary}}, options.verbosity);
   tell(merged.notes, options.verbosity);
 }
 

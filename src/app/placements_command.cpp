@@ -35,19 +35,24 @@ PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const
   return run_placements(scene, spec, options);
 }
 
-void draw_maps(const studies::PlacementViews& views, const std::filesystem::path& folder) {
+/// What was written.
+std::vector<std::filesystem::path> draw_maps(const studies::PlacementViews& views,
+                                             const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
   const auto write = [&](const char* name, const std::optional<studies::PlacementView>& view) {
     if (!view) return;
     const io::Pixels picture = io::drawn(view->map);
-    io::write_png(folder / name, picture.width, picture.height, picture.rgb);
+    io::write_png(files.emplace_back(folder / name), picture.width, picture.height, picture.rgb);
   };
   write("before.png", views.before);
   write("after.png", views.after);
+  return files;
 }
 
 void placements(const Inputs& inputs, const PlacementsOptions& options) {
   check_outputs({{"-o", options.scene, {".gltf", ".glb"}}, {"--report", options.report, {".html"}}}, inputs);
-  const PlacementSpec spec = io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  const PlacementSpec spec =
+      io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
   const SceneSpec scene = read_scene(inputs);
   keep_inputs({{"-o", options.scene}, {"--report", options.report}},
               files_read(spec.light ? spec.light->people : ScriptSpec{}, scene));
@@ -59,14 +64,18 @@ void placements(const Inputs& inputs, const PlacementsOptions& options) {
   const PlacementReport report = compare(scene, spec, inputs, options.threads, stop);
   tell(report.warnings, inputs.verbosity);
   if (!options.scene.empty()) io::write_scene(options.scene, report.best);
+  std::vector<WrittenFile> written{{options.scene}, {options.report}};
   if (report_file || !options.maps.empty()) {
     const studies::PlacementViews views = studies::views_of(scene, spec, report, options.threads);
     stop.throw_if_made();
     if (report_file) write_page(*report_file, studies::placement_report(scene, spec, report, views), inputs);
-    if (!options.maps.empty()) draw_maps(views, options.maps);
+    if (!options.maps.empty()) {
+      for (const std::filesystem::path& map : draw_maps(views, options.maps)) written.push_back({map});
+    }
   }
   std::cout << report.text;
   require_written();
+  tell_written(written, inputs.verbosity);
 }
 
 }  // namespace

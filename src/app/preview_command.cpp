@@ -45,10 +45,8 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   const Picture picture = picture_of(model, request);
   progress.reset();
   io::write_text_file(options.output, picture.png);
-  if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(request.run) << " at "
-              << moment_text(clock, picture.time_s) << '\n';
-  }
+  const std::string about = "trial " + model.trial_of(request.run) + " at " + moment_text(clock, picture.time_s);
+  tell_written({{options.output, about}}, inputs.verbosity);
 }
 
 /// One word "X,Y,Z": an option of three values would take the next option for the third.

@@ -138,6 +138,7 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
   const reconcile::Geometry geometry =
       analysis.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
   reconcile::write_selftest(options.output, result, geometry, made_by(inputs));
+  tell_written({{options.output}}, inputs.verbosity);
 }
 
 void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options) {
@@ -151,6 +152,7 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
   std::cout << reconcile::sentence(result) << '\n';
   require_written();
   reconcile::write_plan(options.output, result, made_by(inputs));
+  tell_written({{options.output}}, inputs.verbosity);
 }
 
 LogMap map_of(const ReconcileOptions& options) {
@@ -195,6 +197,7 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
                           {"pirsim " + version() + " " + git_revision(), io::name_of_input(inputs.scene),
                            io::name_of_input(inputs.script), io::name_of_input(options.measured), model_options(inputs),
                            inputs.marks.empty() ? "" : io::name_of_input(inputs.marks)});
+  tell_written({{options.output}}, inputs.verbosity);
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {

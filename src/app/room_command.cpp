@@ -1,5 +1,6 @@
 #include <iomanip>
-#include <iostream>
+#include <sstream>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/drawn_scene.hpp"
@@ -28,20 +29,22 @@ dataset::DrawnRoom draw_room(const DrawOptions& options) {
                             scenes);
 }
 
-void print(const dataset::DrawnRoom& room, const std::filesystem::path& file) {
+std::string about(const dataset::DrawnRoom& room) {
+  std::ostringstream text;
   std::vector<std::string> seats;
   for (const SeatSpec& seat : room.scene.seats) seats.push_back(seat.id);
-  std::cerr << "wrote " << file.string() << ": room " << room.number << ", " << room.width_m << " x " << room.depth_m
-            << " x " << room.height_m << " m, floor " << std::fixed << std::setprecision(2)
-            << room.scene.floor.area_m2() << " m2, doors " << room.scene.entrances.size() << ", seats" << listed(seats)
-            << ", sensors" << listed(room.scene.sensors) << "; found at try " << room.tries << '\n';
+  text << "room " << room.number << ", " << room.width_m << " x " << room.depth_m << " x " << room.height_m
+       << " m, floor " << std::fixed << std::setprecision(2) << room.scene.floor.area_m2() << " m2, doors "
+       << room.scene.entrances.size() << ", seats" << listed(seats) << ", sensors" << listed(room.scene.sensors)
+       << "; found at try " << room.tries;
+  return std::move(text).str();
 }
 
 void make_room(const DrawOptions& options) {
   check_scene_output(options, "room");
   const dataset::DrawnRoom room = draw_room(options);
   io::write_scene(options.output, room.scene);
-  if (options.inputs.verbosity != Verbosity::quiet) print(room, options.output);
+  tell_written({{options.output, about(room)}}, options.inputs.verbosity);
 }
 
 }  // namespace

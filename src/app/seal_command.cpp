@@ -97,6 +97,7 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   write(files, challenge);
   std::cout << challenge.commitment << '\n';
   require_written();
+  tell_written({{files.answer}, {files.rows}, {files.commitment}}, inputs.verbosity);
 }
 
 void open_challenge(const OpenOptions& options) {

@@ -81,7 +81,7 @@ SceneSpec read_scene(const Inputs& inputs) {
 }
 
 ScriptSpec read_script(const Inputs& inputs) {
-  return io::read_script(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  return io::read_script(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
 }
 
 namespace {
@@ -212,13 +212,24 @@ void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std:
   }
 }
 
+namespace {
+
+/// What the script's summary refers to; an empty path if it doesn't.
+io::NamedFile reference_of(const ScriptSpec& script) {
+  const std::string& file = script.summary.reference_file;
+  if (file.empty()) return {};
+  return io::find_beside(script.directory, file, io::DataKind::measured, data_directories());
+}
+
+}  // namespace
+
 std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene) {
   std::vector<std::string> files;
   for (const std::vector<InputFile>* read : {&script.files, &scene.files}) {
     for (const InputFile& file : *read) files.push_back(file.path);
   }
-  const std::string& reference = script.summary.reference_file;
-  if (!reference.empty()) files.push_back((fs::path(script.directory) / reference).string());
+  const io::NamedFile reference = reference_of(script);
+  if (!reference.path.empty()) files.push_back(reference.path.string());
   return files;
 }
 
@@ -234,9 +245,11 @@ void make_folder(const fs::path& folder) {
 }
 
 std::vector<MeasuredCell> measured_cells(const ScriptSpec& script) {
-  const std::string& reference = script.summary.reference_file;
-  if (reference.empty()) return {};
-  return io::read_measured_cells(std::filesystem::path(script.directory) / reference);
+  const io::NamedFile reference = reference_of(script);
+  if (reference.path.empty()) return {};
+  if (!reference.fault.empty())
+    throw Error(ErrorCode::io, script.summary.reference_where, "summary: reference: " + reference.fault);
+  return io::read_measured_cells(reference.path);
 }
 
 void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
@@ -260,6 +273,16 @@ void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   report.footer = made_by(inputs);
   file.stream() << io::to_html(report);
   file.commit();
+}
+
+void tell_written(const std::vector<WrittenFile>& files, Verbosity verbosity) {
+  if (verbosity == Verbosity::quiet) return;
+  std::string text;
+  for (const auto& [file, about] : files) {
+    if (file.empty() || io::is_written_directly(file)) continue;
+    text += (text.empty() ? "wrote " : ", ") + file.string() + (about.empty() ? "" : ": " + about);
+  }
+  if (!text.empty()) std::cerr << text << '\n';
 }
 
 void require_written() {

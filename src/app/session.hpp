@@ -76,6 +76,13 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
                    const std::string& title, const std::string& remarks, Verbosity verbosity);
 /// Writes a report with what made it in the footer, and commits the file.
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
+struct WrittenFile {
+  std::filesystem::path file;  ///< empty: not asked for
+  std::string about = {};      ///< "30 rows"
+};
+/// "wrote rows.csv: 30 rows, table.md" on standard error, of those that were asked for and are no streams; nothing if
+/// quiet.
+void tell_written(const std::vector<WrittenFile>& files, Verbosity verbosity);
 /// "pirsim 0.2.0 (1a2b3c4), room.gltf, marks.yaml, study.yaml"
 [[nodiscard]] std::string made_by(const Inputs& inputs);
 

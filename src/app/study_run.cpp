@@ -103,22 +103,16 @@ namespace {
 void tell_what_is_written(const RunOptions& options, const TableOutput& rows, std::uint32_t n_new,
                           Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
-  std::string text;
-  const auto add = [&](const std::filesystem::path& file) {
-    if (!file.empty() && !io::is_written_directly(file)) text += (text.empty() ? "wrote " : ", ") + file.string();
-  };
   if (n_new == 0 && options.rows.start == RowOptions::Start::resume) {
     std::cerr << options.rows.output.string() << ": nothing to resume, all runs are there\n";
     return;
   }
-  if (is_resumable(options.rows)) {
-    add(options.rows.output);
-    text += ": " + std::to_string(rows.rows()) + " rows";
-  }
+  std::vector<WrittenFile> files;
+  if (is_resumable(options.rows)) files.push_back({options.rows.output, std::to_string(rows.rows()) + " rows"});
   for (const auto& file :
        {options.summary, options.report, options.zones, options.trace, options.occupants, options.casas})
-    add(file);
-  if (!text.empty()) std::cerr << text << '\n';
+    files.push_back({file});
+  tell_written(files, verbosity);
 }
 
 /// Of all these runs, nearly; 0 if runs end when everybody is done.

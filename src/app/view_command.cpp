@@ -8,6 +8,7 @@
 #include "app/moment.hpp"
 #include "app/output_size.hpp"
 #include "app/session.hpp"
+#include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/coverage.hpp"
@@ -63,9 +64,10 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   progress.reset();
   io::write_text_file(options.output, page.html);
   if (inputs.verbosity == Verbosity::quiet) return;
-  std::cerr << "wrote " << options.output.string() << ": " << page.about << ", "
-            << span_text(clock, page.from_s, page.to_s) << " of " << span_text(clock, 0.0, page.run_s) << ", "
-            << std::ceil(static_cast<double>(page.html.size()) / 1e5) / 10.0 << " MB\n";
+  const double megabytes = std::ceil(static_cast<double>(page.html.size()) / 1e5) / 10.0;
+  tell_written({{options.output, page.about + ", " + span_text(clock, page.from_s, page.to_s) + " of " +
+                                     span_text(clock, 0.0, page.run_s) + ", " + fixed(megabytes, 1) + " MB"}},
+               inputs.verbosity);
   if (page.is_busiest_part) {
     std::cerr << "the run is longer than " << page.to_s - page.from_s
               << " s: these are the seconds with most motion; --from and --to choose others\n";

@@ -58,7 +58,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   if (inputs.verbosity == Verbosity::quiet) return;
   (is_stream ? std::cerr : std::cout) << to_text(test, result);
   require_written();
-  if (!is_stream) std::cerr << "wrote " << options.output.string() << '\n';
+  tell_written({{options.output}, {options.report}}, inputs.verbosity);
 }
 
 }  // namespace

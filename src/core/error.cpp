@@ -34,6 +34,15 @@ std::vector<Issue> of_severity(const std::vector<Issue>& issues, Severity severi
   return result;
 }
 
+/// Of what there is ("; there are S1, S2") the list is told with the first fault that ends in it.
+void leave_out_told_list(const std::vector<Issue>& issues, std::string& message) {
+  const std::size_t begin = message.rfind("; there are ");
+  if (begin == std::string::npos) return;
+  const std::string list = message.substr(begin);
+  if (std::ranges::any_of(issues, [&](const Issue& told) { return told.message.ends_with(list); }))
+    message.erase(begin);
+}
+
 /// Nothing twice; a file made to annoy has millions of faults, which nobody reads.
 void add(std::vector<Issue>& issues, Issue issue) {
   constexpr std::ptrdiff_t most = 100;
@@ -43,6 +52,8 @@ void add(std::vector<Issue>& issues, Issue issue) {
   const auto is_told = [&](const Issue& other) {
     return other.severity == issue.severity && other.where == issue.where && other.message == issue.message;
   };
+  if (std::any_of(issues.begin(), issues.end(), is_told)) return;
+  leave_out_told_list(issues, issue.message);
   if (std::any_of(issues.begin(), issues.end(), is_told)) return;
   if (told == most) {
     issue.where.line = issue.where.column = 0;
@@ -66,6 +77,18 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+/// The only candidate that goes on after the name with an underscore, as `yaw_deg` after `yaw`; null if there are more.
+const std::string* whole_of(std::string_view name, const std::vector<std::string>& candidates) {
+  const auto goes_on = [&](const std::string& candidate) {
+    return candidate.size() > name.size() && candidate[name.size()] == '_' &&
+           edit_distance(name, candidate.substr(0, name.size())) == 0;
+  };
+  const auto first = std::ranges::find_if(candidates, goes_on);
+  if (name.empty() || first == candidates.end()) return nullptr;
+  const bool is_only = std::find_if(first + 1, candidates.end(), goes_on) == candidates.end();
+  return is_only ? &*first : nullptr;
 }
 
 }  // namespace
@@ -105,6 +128,7 @@ std::vector<Issue> Diagnostics::warnings() const { return of_severity(issues_, S
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
   constexpr std::size_t longest = 100;  // no name that anybody means; and the time grows with the product of lengths
   if (name.size() > longest) return {};
+  if (const std::string* whole = whole_of(name, candidates)) return " (did you mean '" + *whole + "'?)";
   std::size_t best = std::numeric_limits<std::size_t>::max();
   const std::string* nearest = nullptr;
   for (const std::string& candidate : candidates) {

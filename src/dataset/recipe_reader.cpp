@@ -125,15 +125,14 @@ std::optional<CountRange> read_people(YamlMap& map, std::optional<CountRange> ot
 /// A file's name, or `{scene: flat.glb, marks: flat.yaml}`.
 OwnScene read_own_scene(const YamlNode& node, const RecipeSpec& recipe, Diagnostics& faults) {
   const auto file_of = [&](const YamlNode& named, const std::string& what) {
-    std::filesystem::path file = io::folder_of_input(recipe.file) / named.text(faults, what);
+    const auto [file, fault] = io::find_beside(io::folder_of_input(recipe.file), named.text(faults, what),
+                                               io::DataKind::rooms, recipe.data_directories);
     std::error_code unreadable;
-    const auto status = std::filesystem::status(file, unreadable);
-    const std::string name = "'" + file.string() + "'";
-    if (!std::filesystem::exists(status)) {
-      faults.error(named.where(), what + ": there is no file " + name);
-    } else if (!std::filesystem::is_regular_file(status)) {
+    if (!fault.empty()) {
+      faults.error(named.where(), what + ": " + fault);
+    } else if (!std::filesystem::is_regular_file(file, unreadable)) {
       faults.error(named.where(),
-                   what + ": " + name + " isn't a regular file: it is read again for each part of the work");
+                   what + ": '" + file.string() + "' isn't a regular file: it is read again for each part of the work");
     }
     return file;
   };
@@ -284,7 +283,8 @@ int RecipeSpec::n_rooms() const {
 namespace {
 
 RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file,
-                       std::span<const std::string> overrides) {
+                       std::span<const std::string> overrides,
+                       std::span<const std::filesystem::path> data_directories) {
   const YamlNode root = YamlNode::load(input, overrides);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
@@ -292,6 +292,7 @@ RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file
   RecipeSpec recipe;
   recipe.file = file;
   recipe.overrides.assign(overrides.begin(), overrides.end());
+  recipe.data_directories.assign(data_directories.begin(), data_directories.end());
   recipe.text = recipe.given = input.bytes;
   for (const std::string& change : overrides) {
     // A dataset's own recipe has it already.
@@ -328,14 +329,15 @@ RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file
 
 }  // namespace
 
-RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return recipe_from(io::read_input(file), file, overrides);
+RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides,
+                       std::span<const std::filesystem::path> data_directories) {
+  return recipe_from(io::read_input(file), file, overrides, data_directories);
 }
 
 RecipeSpec with_overrides(const RecipeSpec& recipe, std::span<const std::string> more) {
   std::vector<std::string> overrides = recipe.overrides;
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return recipe_from({recipe.file, recipe.given}, recipe.file, overrides);
+  return recipe_from({recipe.file, recipe.given}, recipe.file, overrides, recipe.data_directories);
 }
 
 }  // namespace pirsim::dataset

@@ -42,10 +42,10 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
     out << "  " << std::left << std::setw(static_cast<int>(width)) << sensor << std::right << std::setw(6) << rays
         << std::setw(14) << cut << std::setw(13) << longest << std::setw(10) << floor;
   };
-  out << "what each sensor sees of a person who stands on one of " << counted(report.places, "place") << " (every "
-      << fixed(report.spacing_m, 2) << " m), or sits still (to be motion, the person has to move):\n";
+  out << "at rest: what each sensor sees of a person who stands on one of " << counted(report.places, "place")
+      << " (every " << fixed(report.spacing_m, 2) << " m), or sits still (to be motion, the person has to move):\n";
   line("sensor", "rays", "end at room", "longest, m", "floor, %");
-  out << "  seats\n";
+  out << "  seats at rest\n";
   for (const SensorSight& sight : report.sensors) {
     line(sight.sensor, sight.rays, sight.rays_cut, fixed(sight.longest_m, 2), fixed(percent(sight.places), 1));
     out << "  " << (sight.sees_nothing() ? "sees NOBODY" : named(sight.seats, scene.seats.size())) << '\n';
@@ -77,8 +77,8 @@ void print_deaf_sensors(std::ostream& out, const WorkReport& work, const Model& 
       n_channels += notice.channels;
       n_for_good += notice.for_good;
     }
-    out << "  " << scene.sensors[sensor].id << " sees " << counted(n_seen, "seat") << " and is deaf to work in "
-        << named(deaf, work.seats.size()) << ": ";
+    out << "  " << scene.sensors[sensor].id << " is deaf to work in " << named(deaf, work.seats.size())
+        << " (it sees somebody at work in " << counted(n_seen, "seat") << "): ";
     if (response_of(scene, sensing, scene.sensors[sensor]) == Response::analog) {
       out << "its signal stays within the threshold\n";
     } else {
@@ -95,9 +95,9 @@ void print(std::ostream& out, const WorkReport& work, const std::string& who, co
   const std::size_t n_tried = work.seats.size(), n_seats = model.scene().seats.size();
   if (n_tried == 0) return;
   const SeatsAtWork seats = work.by_any();
-  out << who << ", at work for " << work.seconds << " s in each of "
+  out << "at work: " << who << ", for " << work.seconds << " s in each of "
       << (n_tried < n_seats ? std::to_string(n_tried) + " of the " : "") << counted(n_seats, "seat") << ": noticed in "
-      << named(seats.noticed, n_tried) << "; seen, but never noticed, in " << named(seats.deaf, n_tried)
+      << named(seats.noticed, n_tried) << "; deaf (seen, but never noticed) in " << named(seats.deaf, n_tried)
       << "; unseen in " << named(seats.unseen, n_tried) << '\n';
   print_deaf_sensors(out, work, model);
   out << '\n';

@@ -140,14 +140,14 @@ std::string to_text(const CoverageMap& map, const CoverageFigures& figures, cons
   std::ostringstream out;
   const auto line = [&](const std::string& name, const MapFigures& f) {
     out << "  " << std::left << std::setw(10) << name << std::right << std::fixed << std::setprecision(2)
-        << std::setw(9) << f.mean_step << std::setw(10) << f.greatest_step << std::setprecision(1) << std::setw(10)
+        << std::setw(9) << f.mean_step << std::setw(10) << f.greatest_step << std::setprecision(1) << std::setw(13)
         << 100.0 * f.blind_fraction << std::setprecision(2) << std::setw(12) << f.seen_area_m2 << '\n';
   };
   out << map.grid.n_squares() << " squares of " << map.grid.spacing_m() << " m, " << map.n_windows
-      << " windows in each\n  sensor    mean step  greatest  blind, %   seen, m2\n";
+      << " windows in each\n  sensor    mean step  greatest  not seen, %   seen, m2\n";
   for (std::size_t i = 0; i < map.sensors.size(); ++i) line(map.sensors[i], figures.sensors[i]);
   line("all", figures.all);
-  if (!areas.empty()) out << "  blind share of each area to all sensors, and to its own:\n";
+  if (!areas.empty()) out << "  not seen of each area by all sensors, and by its own:\n";
   for (const AreaCoverage& area : areas) {
     out << "    " << area.area << ": " << fixed(100.0 * area.blind_fraction, 1) << " %, "
         << (area.blind_to_its_own ? fixed(100.0 * *area.blind_to_its_own, 1) + " %" : "no sensor") << '\n';

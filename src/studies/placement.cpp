@@ -51,16 +51,29 @@ CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, con
   return {with_set(scene, set), coverage};
 }
 
+std::vector<std::vector<MotionCount>> counts_at_seats(const CoverageStudy& study) {
+  std::vector<std::vector<MotionCount>> counts;
+  for (const SeatSpec& seat : study.scene().seats)
+    counts.push_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
+  return counts;
+}
+
+std::vector<std::string> seats_without_target(const SceneSpec& scene,
+                                              const std::vector<std::vector<MotionCount>>& counts) {
+  std::vector<std::string> seats;
+  for (std::size_t i = 0; i < scene.seats.size(); ++i) {
+    if (std::ranges::all_of(counts[i], [](MotionCount n) { return n == 0; })) seats.push_back(scene.seats[i].id);
+  }
+  return seats;
+}
+
 PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
   const CoverageStudy study = study_of(scene, coverage, set);
   const CoverageMap map = run_coverage(study, threads);
   const MapFigures figures = figures_of(map).all;
   PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}, {}, {}};
-  std::vector<std::vector<MotionCount>> at_seats;
-  for (const SeatSpec& seat : scene.seats) {
-    const auto& counts = at_seats.emplace_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
-    if (std::ranges::all_of(counts, [](MotionCount n) { return n == 0; })) result.blind_seats.push_back(seat.id);
-  }
+  const auto at_seats = counts_at_seats(study);
+  result.blind_seats = seats_without_target(scene, at_seats);
   result.idle = idle_of(map, at_seats);
   return result;
 }

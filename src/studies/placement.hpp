@@ -24,6 +24,12 @@ namespace pirsim::studies {
 [[nodiscard]] SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set);
 [[nodiscard]] CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set);
 
+/// (n_seats)(n_sensors) windows in which each sensor reports motion of a target that turns where the seat is.
+[[nodiscard]] std::vector<std::vector<MotionCount>> counts_at_seats(const CoverageStudy& study);
+/// Seats where no sensor does. counts: (n_seats)(n_sensors).
+[[nodiscard]] std::vector<std::string> seats_without_target(const SceneSpec& scene,
+                                                            const std::vector<std::vector<MotionCount>>& counts);
+
 /// Somebody of natural style at work in each seat, in sight of the study's sensors.
 [[nodiscard]] WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads = 0);
 /// By seats all of them are tried. Throws as score() does.

@@ -17,7 +17,8 @@ PlacementView view_of(const SceneSpec& scene, const PlacementSpec& spec, const s
   const CoverageStudy study = study_of(scene, spec.coverage, {});
   const CoverageMap map = run_coverage(study, threads);
   PlacementView view{map_of_all(study, map), watch_workers(study, SeatsTried::all, threads).by_any(),
-                     figures_of(map).all.seen_area_m2, scene.sensors.size()};
+                     seats_without_target(scene, counts_at_seats(study)), figures_of(map).all.seen_area_m2,
+                     scene.sensors.size()};
   view.map.title = title;
   view.map.ringed_as = "seat where nobody at work is noticed";
   for (const SeatSpec& seat : scene.seats) {
@@ -40,10 +41,11 @@ io::ReportSection section_of(const std::string& heading, const PlacementView& vi
   const auto row = [&](const std::string& what, const std::vector<std::string>& seats) {
     table.rows.push_back({what, std::to_string(seats.size()), named(seats)});
   };
-  row("blind: unseen, no sensor sees who works there", view.at_work.unseen);
-  row("blind: deaf, sensors see who works there and never report motion", view.at_work.deaf);
-  row("noticed, in a second at least", view.at_work.noticed);
+  row("at work, noticed: in a second at least", view.at_work.noticed);
   row("of these, surely: in ten seconds at least", view.at_work.surely);
+  row("at work, deaf: sensors see who works there and never report motion", view.at_work.deaf);
+  row("at work, unseen: no sensor sees who works there", view.at_work.unseen);
+  row("a turning target there isn't seen: no sensor reports its motion", view.target_unseen);
   return {heading,
           {std::to_string(view.n_sensors) + " sensors, which see the target on " + fixed(view.seen_area_m2, 2) +
            " m² of floor."},
@@ -92,8 +94,8 @@ io::Table ranking(const std::vector<PlacementScore>& scores, const PlacementSpec
   io::Table table{{"rank", "set"}, {}};
   if (spec.light)
     table.headings.insert(table.headings.end(), {"false-offs an hour", "in the dark", "lit and empty, h"});
-  table.headings.insert(table.headings.end(),
-                        {"area seen, m²", "blind", "overlap", "seats noticed", "surely", "deaf", "unseen"});
+  table.headings.insert(table.headings.end(), {"floor: target seen, m²", "target not seen", "overlap",
+                                               "seats at work: noticed", "surely", "at work: deaf", "at work: unseen"});
   const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
@@ -137,7 +139,7 @@ io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, c
       "Sets of sensors for " + scene.name + ", ranked by " + ranked_by(spec) + ". The sensors' response is " +
           responses_in_words(report.best, spec.coverage.sensing) + ".",
       "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
-      "means blind to all. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
+      "means that none did. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
       "where "
       "no sensor noticed it. " +
           signs_of_maps(scene)};

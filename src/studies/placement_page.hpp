@@ -13,6 +13,7 @@ namespace pirsim::studies {
 struct PlacementView {
   io::MapChart map;  ///< of all sensors, rings round the seats where nobody at work is noticed
   SeatsAtWork at_work;
+  std::vector<std::string> target_unseen;  ///< seats where no sensor reports motion of a turning target
   double seen_area_m2 = 0.0;
   std::size_t n_sensors = 0;
 };

@@ -68,9 +68,9 @@ std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSp
   const bool has_light = spec.light.has_value();
   std::ostringstream out;
   out << "ranked by " << ranked_by(spec) << "\n      " << (has_light ? "  false-offs              lit and" : "")
-      << "                                 seats at work\n  rank"
+      << "  floor, by a turning target        seats, by somebody at work there\n  rank"
       << (has_light ? "   an hour     dark, %  empty, h" : "")
-      << "  seen, m2  blind, %  overlap, %  noticed  surely  deaf  unseen  set (blind seats; deaf to work in)\n"
+      << "  seen, m2  not seen, %  overlap, %   noticed  surely  deaf  unseen  set\n"
       << std::fixed;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
@@ -79,11 +79,15 @@ std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSp
       out << std::setprecision(3) << std::setw(10) << s.light.false_offs_an_hour() << std::setprecision(2)
           << std::setw(12) << 100.0 * s.light.dark_share() << std::setw(10) << s.light.lit_empty_h;
     }
-    out << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1) << std::setw(10)
-        << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << std::setw(9) << s.at_work.noticed.size()
+    out << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1) << std::setw(13)
+        << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << std::setw(10) << s.at_work.noticed.size()
         << std::setw(8) << s.at_work.surely.size() << std::setw(6) << s.at_work.deaf.size() << std::setw(8)
-        << s.at_work.unseen.size() << "  " << s.set.id << " (" << listed(s.blind_seats) << "; "
-        << listed(s.at_work.deaf) << ")\n";
+        << s.at_work.unseen.size() << "  " << s.set.id << '\n';
+  }
+  out << "seats by name:\n";
+  for (const PlacementScore& s : scores) {
+    out << "  " << s.set.id << ": a turning target there isn't seen: " << listed(s.blind_seats)
+        << "; at work: deaf: " << listed(s.at_work.deaf) << ", unseen: " << listed(s.at_work.unseen) << '\n';
   }
   return out.str();
 }

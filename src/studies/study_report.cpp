@@ -58,7 +58,7 @@ std::vector<std::string> row_of(const std::string& name, const MapFigures& f) {
 
 io::ReportSection areas_section(const std::vector<AreaCoverage>& areas) {
   const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
-  io::Table table{{"area (its sensors)", "squares", "blind to all sensors", "blind to its own"}, {}};
+  io::Table table{{"area (its sensors)", "squares", "not seen by any sensor", "not seen by its own"}, {}};
   for (const AreaCoverage& area : areas) {
     table.rows.push_back({area.area, std::to_string(area.squares), percent(area.blind_fraction),
                           area.blind_to_its_own ? percent(*area.blind_to_its_own) : "no sensor"});
@@ -116,24 +116,26 @@ io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
 io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
   io::Report report;
   report.title = study.spec().name + ": where each sensor sees motion";
-  report.paragraphs = {"A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
-                           fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
-                           std::to_string(map.grid.n_squares()) +
-                           " squares). The maps, seen from above, tell for each sensor in how many "
-                           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
-                       "The target is " + std::to_string(study.target().crosses().size()) +
-                           " crosses of two bars, turning on the spot. The sensors' response is " +
-                           responses_in_words(study.scene(), study.spec().sensing) + ".",
-                       signs_of_maps(study.scene()) +
-                           (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
+  report.paragraphs = {
+      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
+          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
+          std::to_string(map.grid.n_squares()) +
+          " squares). The maps, seen from above, tell for each sensor in how many "
+          "of these windows it reported motion: 0 means not seen there. Point at a square for its value.",
+      "The target is " + std::to_string(study.target().crosses().size()) +
+          " crosses of two bars, turning on the spot. The sensors' response is " +
+          responses_in_words(study.scene(), study.spec().sensing) + ".",
+      signs_of_maps(study.scene()) +
+          (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
 
-  io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
+  io::Table table{{"sensor", "mean step", "greatest step", "not seen", "area seen, m²"}, {}};
   for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
   table.rows.push_back(row_of("all together", figures.all));
   report.sections.push_back(
       {"In numbers",
        {"Mean step: average difference between two neighbouring squares (sharing a side) that both have motion. "
-        "Greatest step: between any two neighbours. Blind: share of the squares without any motion. The last row takes "
+        "Greatest step: between any two neighbours. Not seen: share of the squares without any motion. The last row "
+        "takes "
         "the steps of all sensors, and the area seen by at least one."},
        {std::move(table)},
        {}});
@@ -143,12 +145,12 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
   if (map.sensors.size() > 1) {
     io::MapChart chart = map_of_all(study, map);
     chart.note = "in each square the sensor that reported motion most often there; " +
-                 fixed(100.0 * figures.all.blind_fraction, 0) + " % of the squares are blind to all";
+                 fixed(100.0 * figures.all.blind_fraction, 0) + " % of the squares are seen by none";
     maps.charts.emplace_back(std::move(chart));
   }
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
     io::MapChart chart = map_chart(study, map, i);
-    chart.note = "blind in " + fixed(100.0 * figures.sensors[i].blind_fraction, 0) + " % of the squares";
+    chart.note = "not seen: " + fixed(100.0 * figures.sensors[i].blind_fraction, 0) + " % of the squares";
     maps.charts.emplace_back(std::move(chart));
   }
   report.sections.push_back(std::move(maps));

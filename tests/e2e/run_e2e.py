@@ -71,6 +71,35 @@ OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "v
            "placements": "better.gltf"}
 
 
+# Each option that names an output, with one: what a command then says that it wrote, on standard error.
+ROOM = "--scene", "meeting_room.gltf"
+SHORT = *ROOM, "--script", "studyA.yaml", "--set", "trials.for_each.seat=[S8]", "--replicates", 1
+COARSE = "--set", "spacing_m=2", "--set", "duration_s=2"
+WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--report", "run.html", "--zones", "zones.csv",
+                       "--occupants", "who.csv"),
+                      "rows.csv sums.md run.html zones.csv who.csv"),
+           ("check",): ((*ROOM, "--suggest", "-o", "marks.yaml"), "marks.yaml"),
+           ("preview",): ((*SHORT, "--width", 64, "--height", 64, "-o", "room.png"), "room.png"),
+           ("export",): ((*SHORT, "-o", "run.glb"), "run.glb"), ("view",): ((*SHORT, "--to", 5, "-o", "v.html"), "v.html"),
+           ("coverage",): ((*ROOM, "--script", "studyB.yaml", *COARSE, "-o", "maps", "--report", "maps.html"),
+                           "maps/coverage.csv maps.html"),
+           ("walktest",): ((*ROOM, "--script", "walk_test.yaml", *COARSE[:2], "-o", "walk.csv", "--report", "walk.html"),
+                           "walk.csv walk.html"),
+           ("placements",): ((*ROOM, "--script", "placements.yaml", *COARSE, "--set", "search.evaluations=2",
+                              "-o", "best.gltf", "--report", "sets.html", "--maps", "plans"),
+                             "best.gltf sets.html plans/before.png"),
+           ("room",): (("-o", "room.gltf"), "room.gltf"), ("home",): (("-o", "flat.gltf"), "flat.gltf"),
+           ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--schedule", "day.csv", "--report",
+                           "light.html"), "costs.csv lit.csv day.csv light.html"),
+           ("log",): (("log.csv", "-o", "log_rows.csv", "--report", "log.html"), "log_rows.csv log.html"),
+           ("merge",): (("shards", "-o", "all.csv", *SHORT[2:-2], "--summary", "all.md"), "all.csv all.md"),
+           ("reconcile", "seal"): ((*SHORT, "--answer", "answer.json", "--out", "sealed"),
+                                   "answer.json sealed/measured.csv sealed/commitment.sha256")}
+# Take minutes; day is a run.
+SLOW = {("day",), ("reconcile",), ("reconcile", "plan"), ("reconcile", "selftest"), ("dataset",), ("calibrate",),
+        ("count",), ()}
+
+
 def options_of(command):
     """What the help offers: {"--seed": "N", "--resume": None}."""
     lines = pirsim(*command, "--help").stdout.splitlines()
@@ -104,6 +133,24 @@ class Options(unittest.TestCase):
             names = re.findall(r"^  (\w+) ", text.split("Subcommands:")[1].split("Examples:")[0], re.M)
             return {command}.union(*(below((*command, name)) for name in names))
         self.assertEqual(below(()), {*COMMANDS, *OTHERS})
+
+    def test_every_command_says_what_it_wrote_unless_it_is_to_be_quiet(self):
+        makers = {command for command in {*COMMANDS, *OTHERS}
+                  if {"--output", "--out"} & options_of(command).keys()}
+        self.assertEqual(makers, {*WRITTEN, *SLOW})
+        with tempfile.TemporaryDirectory() as folder:
+            write(folder, "log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
+            pirsim(*SHORT, "--shard", "1/1", "-o", "shards", "-q", cwd=folder)
+            for command, (args, files) in WRITTEN.items():
+                told = pirsim(*command, *args, cwd=folder).stderr
+                line = [line for line in told.splitlines() if line.startswith("wrote ")]
+                self.assertEqual(len(line), 1, (command, told))
+                for file in files.split():
+                    self.assertRegex(line[0], rf"(wrote |, ){re.escape(file)}(?=[:,]|$)", command)
+                    self.assertTrue((pathlib.Path(folder) / file).exists(), file)
+                for file in ("answer.json", "sealed/measured.csv", "sealed/commitment.sha256", "marks.yaml"):
+                    (pathlib.Path(folder) / file).unlink(missing_ok=True)  # these are never overwritten
+                self.assertNotIn("wrote", pirsim(*command, *args, "-q", cwd=folder).stderr, command)
 
     def test_no_command_offers_an_option_that_it_refuses(self):
         """The room is the last to be read and isn't there: who gets that far has taken option and script."""
@@ -632,7 +679,7 @@ class CommandLine(unittest.TestCase):
             folder = pathlib.Path(name)
             reference = write(folder, "ref.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
             script = write(folder, "s.yaml", (DATA / "studies/studyA.yaml").read_text().replace(
-                "../measured/stefansson2021_table1.csv", "ref.csv"))
+                "stefansson2021_table1.csv", "ref.csv"))
             patched = write(folder, "script_patched.yaml", script.read_text())
             measured = write(folder, "where.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
             self.assertIn("ref.csv", script.read_text())

@@ -112,6 +112,51 @@ class Shipped(unittest.TestCase):
         self.assertIn(f"{own}/studies/studyA.yaml:1:", pirsim("check", "--scene", "meeting_room.gltf", "--script",
                                                               "studyA.yaml", code=3, data=own))
 
+    def test_a_copied_study_or_recipe_goes_on_working(self):
+        """The room is the last to be read and isn't there: who misses it has found all else."""
+        kinds = {"pirsim_script": ("check",), "pirsim_coverage": ("coverage",), "pirsim_walk_test": ("walktest",),
+                 "pirsim_placements": ("placements",)}
+        for study in sorted((DATA / "studies").iterdir()):
+            copy = pathlib.Path(shutil.copy(study, self.folder / f"my_{study.name}"))
+            command, = (args for key, args in kinds.items() if f"\n{key}: 1" in "\n" + copy.read_text())
+            told = pirsim(*command, "--scene", "nowhere.gltf", "--script", copy, code=4, cwd=self.folder)
+            self.assertEqual(told.splitlines()[-1].split(":")[0], "nowhere.gltf", (study, told))
+            if "reference:" in copy.read_text():
+                pirsim("--scene", "meeting_room.gltf", "--script", copy, *SHORT, "--summary", "sums.md", cwd=self.folder)
+                self.assertIn("| S8 | real | 22 |", (self.folder / "sums.md").read_text())
+        for recipe in sorted((DATA / "recipes").iterdir()):
+            copy = shutil.copy(recipe, self.folder / f"my_{recipe.name}")
+            self.assertIn("'x.txt' must end in", pirsim("room", copy, "-o", "x.txt", code=2, cwd=self.folder))
+            pirsim("home" if recipe.name == "homes.yaml" else "room", copy, "-o", "a.gltf", "-q", cwd=self.folder)
+
+    def test_what_a_file_names_is_beside_it_or_shipped_and_has_its_place_in_messages(self):
+        head = "pirsim_script: 1\nduration_s: 5\n"
+        light = "pirsim_placements: 1\ntarget: {x_shapes: {}}\nsets: []\nby: false_off\nlight: {delay_min: 1, script: "
+        recipe = "pirsim_recipe: 1\nrooms:\n  - scenes: ["
+        run = "run", "--scene", "meeting_room.gltf", "--summary", "sums.md", "--script"
+        placements = "placements", "--scene", "nowhere.gltf", "--script"
+        room = "room", "-o", "room.gltf"
+        for args, text, name, place, fault, exit_code in (
+                (run, head + "summary:\n  reference: {}\n", "stefansson2021_table1.csv", "4:14", "summary: reference", 4),
+                (run, head + "occupancy: {{counts: {}}}\n", "stefansson2021_table1.csv", "3:21", "occupancy", 3),
+                (run, head + "people: [{{id: a, body_mesh: {}}}]\n", "flat.gltf", "3:29", "body_mesh", 3),
+                (placements, light.replace("{", "{{").replace("}", "}}") + "{}}}\n", "floor_week.yaml", "5:31",
+                 "light: script", 3),
+                (room, recipe + "{}]\n", "flat.gltf", "3:14", "scenes", 3)):
+            file = self.folder / "named.yaml"
+            for given, told in (("nowhere.x", f"there is no file '{self.folder}/nowhere.x'"),
+                                (f"../{name}", f"there is no file '{self.folder}/../{name}'; '{name}' without a folder "
+                                               "is a shipped one"),
+                                (name.replace(".", "a.", 1), f"(did you mean '{name}'?)")):
+                file.write_text(text.format(given))
+                refused = pirsim(*args, file, code=exit_code, cwd=self.folder)
+                self.assertIn(f"{file}:{place}: error: {fault}: ", refused)
+                self.assertIn(told, refused)
+            file.write_text(text.format(name))
+            result = subprocess.run([PIRSIM, *map(str, args), str(file)], capture_output=True, text=True,
+                                    cwd=self.folder, env={**os.environ, "PIRSIM_DATA_DIR": ""})
+            self.assertNotIn("no file", result.stderr)
+
     def test_an_installation_that_is_moved_finds_its_own(self):
         for program, data in (("usr/bin/pirsim", "usr/share/pirsim"), ("package/pirsim", "package/data")):
             (self.folder / program).parent.mkdir(parents=True)

@@ -80,4 +80,23 @@ fs::path find_file(const fs::path& file, DataKind kind, std::span<const fs::path
   throw Error(ErrorCode::io, Where{name}, "no such file" + among);
 }
 
+NamedFile find_beside(const fs::path& folder, const fs::path& file, DataKind kind,
+                      std::span<const fs::path> data_directories) {
+  std::error_code fault;
+  const fs::path beside = folder / file;
+  if (fs::exists(beside, fault)) return {beside, {}};
+  const auto files = files_of(of(kind), data_folders(data_directories));
+  const std::string bare = file.filename().string();
+  const auto shipped = files.find(bare);
+  const std::string none = "there is no file '" + beside.string() + "'";
+  if (file.has_parent_path()) {
+    const bool is_shipped = shipped != files.end();
+    return {beside, none + (is_shipped ? "; '" + bare + "' without a folder is a shipped one" : "")};
+  }
+  if (shipped != files.end()) return {shipped->second, {}};
+  std::vector<std::string> names;
+  for (const auto& [known, path] : files) names.push_back(known);
+  return {beside, none + did_you_mean(bare, names)};
+}
+
 }  // namespace pirsim::io

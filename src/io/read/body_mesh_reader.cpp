@@ -66,14 +66,13 @@ BodyMeshes BodyMeshReader::read(const std::string& file, const Where& where, Dia
   if (file.empty()) return {};
   const auto [known, is_first] = known_.try_emplace(file);
   if (!is_first) return known->second;
-  std::error_code ignored;
-  if (const auto status = std::filesystem::status(folder_ / file, ignored);
-      !std::filesystem::exists(status) || std::filesystem::is_directory(status)) {
-    faults.error(where, "body_mesh: there is no file '" + (folder_ / file).string() + "'");
+  const NamedFile named = beside_.find(file, DataKind::rooms);
+  if (!named.fault.empty()) {
+    faults.error(where, "body_mesh: " + named.fault);
     return {};
   }
   try {
-    BodyBuilder body(folder_ / file, faults);
+    BodyBuilder body(named.path, faults);
     files_.insert(files_.end(), body.files().begin(), body.files().end());
     known->second = body.build();
   } catch (const Error& fault) {

@@ -10,19 +10,17 @@ namespace pirsim::io {
 namespace {
 
 /// The table, or none after a fault.
-std::optional<CsvTable> read_table(const std::string& file, const std::filesystem::path& folder, const Where& where,
+std::optional<CsvTable> read_table(const std::string& file, const detail::FilesBeside& beside, const Where& where,
                                    std::vector<InputFile>& files, Diagnostics& faults) {
-  const std::filesystem::path path = folder / file;
-  std::error_code ignored;
-  if (const auto status = std::filesystem::status(path, ignored);
-      !std::filesystem::exists(status) || std::filesystem::is_directory(status)) {
-    faults.error(where, "occupancy: there is no file '" + path.string() + "'");
+  const NamedFile named = beside.find(file, DataKind::measured);
+  if (!named.fault.empty()) {
+    faults.error(where, "occupancy: " + named.fault);
     return std::nullopt;
   }
   try {
-    Input input = read_input(path);
+    Input input = read_input(named.path);
     files.push_back(input.file());
-    return CsvTable::parse(decompressed(std::move(input), max_text_file_bytes), path.string());
+    return CsvTable::parse(decompressed(std::move(input), max_text_file_bytes), named.path.string());
   } catch (const Error& fault) {
     for (const Issue& issue : fault.issues()) faults.error(issue.where, issue.message);
   }
@@ -59,19 +57,19 @@ std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>
     counts.time = map.text("time");
     counts.column = map.text("people");
     read_areas(map, counts);
-    if (const auto table = read_table(counts.file, folder_, map.where("counts"), files_, found))
+    if (const auto table = read_table(counts.file, beside_, map.where("counts"), files_, found))
       read_counts(*table, counts, found);
   }
   if (map.child("places")) {
     PlacesSpec& places = spec.places.emplace();
     places.file = map.required_text("places");
-    if (const auto table = read_table(places.file, folder_, map.where("places"), files_, found))
+    if (const auto table = read_table(places.file, beside_, map.where("places"), files_, found))
       read_places(*table, places, found);
   }
   if (map.child("positions")) {
     PositionsSpec& positions = spec.positions.emplace();
     positions.file = map.required_text("positions");
-    if (const auto table = read_table(positions.file, folder_, map.where("positions"), files_, found))
+    if (const auto table = read_table(positions.file, beside_, map.where("positions"), files_, found))
       read_positions(*table, positions, found);
   }
   map.finish();

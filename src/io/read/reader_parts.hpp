@@ -168,13 +168,22 @@ struct ScriptTime {
 
 namespace pirsim::io::detail {
 
+/// The files that an input may name.
+struct FilesBeside {
+  std::filesystem::path folder;  ///< where the input lies
+  std::span<const std::filesystem::path> data_directories{};
+
+  [[nodiscard]] NamedFile find(const std::string& file, DataKind kind) const {
+    return find_beside(folder, file, kind, data_directories);
+  }
+};
+
 // Bodies as glTF meshes, one a part.
 
 /// Reads each file once, however many people wear it.
 class BodyMeshReader {
  public:
-  /// folder: what file names are relative to.
-  explicit BodyMeshReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit BodyMeshReader(FilesBeside beside) : beside_(std::move(beside)) {}
 
   /// The mesh of every node that has one; a node's name is its part's, a node's frame is its part's frame. Faults of
   /// the file go to `faults` with their place in it; a missing file is a fault at `where`.
@@ -182,7 +191,7 @@ class BodyMeshReader {
   [[nodiscard]] const std::vector<InputFile>& files() const noexcept { return files_; }  ///< all that was read
 
  private:
-  std::filesystem::path folder_;
+  FilesBeside beside_;
   std::map<std::string, BodyMeshes> known_;
   std::vector<InputFile> files_;
 };
@@ -195,8 +204,7 @@ namespace pirsim::io::detail {
 
 class OccupancyReader {
  public:
-  /// folder: what file names are relative to.
-  explicit OccupancyReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit OccupancyReader(FilesBeside beside) : beside_(std::move(beside)) {}
 
   /// Faults of the data go to `faults` with their place in the file. begin: the script's.
   [[nodiscard]] std::optional<OccupancySpec> read(const std::optional<YamlNode>& node, const std::string& begin,
@@ -204,7 +212,7 @@ class OccupancyReader {
   [[nodiscard]] const std::vector<InputFile>& files() const noexcept { return files_; }  ///< all that was read
 
  private:
-  std::filesystem::path folder_;
+  FilesBeside beside_;
   std::vector<InputFile> files_;
 };
 

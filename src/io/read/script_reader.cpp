@@ -16,7 +16,10 @@ using detail::BodyMeshReader;
 
 SummarySpec read_summary(YamlMap& script) {
   SummarySpec summary;
-  read_part(script, "summary", summary, [&](YamlMap& map) { summary.reference_file = map.text("reference"); });
+  read_part(script, "summary", summary, [&](YamlMap& map) {
+    summary.reference_file = map.text("reference");
+    summary.reference_where = map.where("reference");
+  });
   return summary;
 }
 
@@ -209,23 +212,23 @@ void add_people_of_all(const TrialSpec& every_trial, std::vector<TrialSpec>& tri
   }
 }
 
-/// name: of the script, if it doesn't say; folder: what file names in it are relative to.
-ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::filesystem::path& folder) {
+/// name: of the script, if it doesn't say; files: those that it may name.
+ScriptSpec script_of(const YamlNode& root, const std::string& name, const detail::FilesBeside& files) {
   Diagnostics faults;
   YamlMap map(root, faults, "script");
   check_version(map, "pirsim_script");
   ScriptSpec script;
   script.name = map.text("name", name);
-  script.directory = folder.string();
+  script.directory = files.folder.string();
   read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map);
   script.begin = map.text("begin");
   TrialSpec every_trial;
   every_trial.schedule = read_schedule(map.child("schedule"), faults);
-  detail::OccupancyReader occupancy(folder);
+  detail::OccupancyReader occupancy(files);
   every_trial.occupancy = occupancy.read(map.child("occupancy"), script.begin, faults);
-  Surroundings around{BodyMeshReader(folder), time_of(script, every_trial, faults)};
+  Surroundings around{BodyMeshReader(files), time_of(script, every_trial, faults)};
   script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);
   read_numbers(map, every_trial);
   for (TrialSpec& trial : script.trials) {
@@ -255,15 +258,19 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
 
 }  // namespace
 
-ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides) {
+ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides,
+                       std::span<const std::filesystem::path> data_directories) {
   const Input input = read_input(file);
-  ScriptSpec script = script_of(YamlNode::load(input, overrides), stem_of_input(file), folder_of_input(file));
+  ScriptSpec script =
+      script_of(YamlNode::load(input, overrides), stem_of_input(file), {folder_of_input(file), data_directories});
   script.files.insert(script.files.begin(), input.file());
   return script;
 }
 
-ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
-  return script_of(YamlNode::parse(text, name, overrides), stem_of_input(name), folder_of_input(name));
+ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides,
+                        std::span<const std::filesystem::path> data_directories) {
+  return script_of(YamlNode::parse(text, name, overrides), stem_of_input(name),
+                   {folder_of_input(name), data_directories});
 }
 
 }  // namespace pirsim::io

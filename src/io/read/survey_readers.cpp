@@ -135,8 +135,7 @@ PlacementSearchSpec read_search(const YamlNode& node, ModelPlaces& models, Diagn
   return search;
 }
 
-/// folder: what the script's name is relative to.
-PlacementLightSpec read_light(const YamlNode& node, const std::filesystem::path& folder, Diagnostics& faults) {
+PlacementLightSpec read_light(const YamlNode& node, const detail::FilesBeside& beside, Diagnostics& faults) {
   YamlMap map(node, faults, "light");
   PlacementLightSpec light;
   read_numbers(map, light);
@@ -146,8 +145,13 @@ PlacementLightSpec read_light(const YamlNode& node, const std::filesystem::path&
     overrides.push_back("replicates=" + std::to_string(map.integer("replicates", 1, {.min = 1, .max = 1000})));
   map.finish();
   if (script.empty()) return light;
+  const NamedFile named = beside.find(script, DataKind::studies);
+  if (!named.fault.empty()) {
+    faults.error(map.where("script"), "light: script: " + named.fault);
+    return light;
+  }
   try {
-    light.people = read_script(folder / script, overrides);
+    light.people = read_script(named.path, overrides, beside.data_directories);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::io) throw;
     faults.error(map.where("script"), std::string("light: script: ") + error.what());
@@ -157,7 +161,8 @@ PlacementLightSpec read_light(const YamlNode& node, const std::filesystem::path&
 
 }  // namespace
 
-PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides) {
+PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides,
+                              std::span<const std::filesystem::path> data_directories) {
   return read_versioned(
       YamlNode::load(read_input(file), overrides), "placement study", "pirsim_placements", [&](YamlMap& map) {
         PlacementSpec spec;
@@ -171,7 +176,8 @@ PlacementSpec read_placements(const std::filesystem::path& file, std::span<const
         }
         read_fields(map, spec);
         if (map.has("by")) spec.by_where = map.where("by");
-        if (const auto light = map.child("light")) spec.light = read_light(*light, folder_of_input(file), map.faults());
+        if (const auto light = map.child("light"))
+          spec.light = read_light(*light, {folder_of_input(file), data_directories}, map.faults());
         if (spec.by == PlacementAim::false_off && !spec.light) {
           map.faults().error(spec.by_where,
                              "by: false_off: whose light? It needs `light: {script: week.yaml, delay_min: 10}`");

@@ -155,6 +155,7 @@ ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder) {
   const auto move = [&](std::string& file) {
     if (file.empty() || fs::path(file).is_absolute()) return;
     const fs::path there = fs::absolute(fs::path(script.directory) / file);
+    if (!fs::path(file).has_parent_path() && !fs::exists(there)) return;  // a shipped one is found from everywhere
     const fs::path from_here =
         fs::weakly_canonical(there).lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
     file = (from_here.empty() ? there : from_here).generic_string();

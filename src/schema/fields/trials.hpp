@@ -42,8 +42,10 @@ struct Fields<SummarySpec> {
   static constexpr const char* name = "Summary";
   static constexpr const char* about =
       "Which rows the command line's --summary adds up, and what they are compared with.";
-  static constexpr std::tuple all{FIELD(phases, "rows in these phases count"),
-                                  FIELD(reference_file, "CSV with measured sums, or empty; relative to the script")};
+  static constexpr std::tuple all{
+      FIELD(phases, "rows in these phases count"),
+      FIELD(reference_file, "CSV with measured sums, or empty; beside the script, or a shipped one"),
+      LABEL(reference_where)};
 };
 template <>
 struct Fields<EffectSpec> {

@@ -79,7 +79,8 @@ TEST_CASE("a seat where clusters are covered for good is told, and is as deaf in
   CHECK(seconds_with_motion_while_working(deaf) == 0);
   CHECK(watched(deaf).deaf_seats(0) == std::vector<std::string>{"armchair"});
   CHECK(watched(deaf).by_any().deaf == std::vector<std::string>{"armchair"});
-  CHECK(check_study(deaf).text.find("CEILING sees 1 seat and is deaf to work in armchair: ") != std::string::npos);
+  CHECK(check_study(deaf).text.find("CEILING is deaf to work in armchair (it sees somebody at work in 1 seat): ") !=
+        std::string::npos);
 
   const Model beams = compiled(Response::zones, ChangePer::beam);
   CHECK(watched(beams).notice(0, 0).seconds > 0);

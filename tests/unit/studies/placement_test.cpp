@@ -123,7 +123,8 @@ TEST_CASE("a needle into a sitter's middle sees them and is deaf to their work, 
     CHECK(score.at_work.unseen.size() == (score.set.id == "left" ? 1 : 2));
   }
   CHECK(report.text.find("noticed  surely  deaf  unseen") != std::string::npos);
-  CHECK(report.text.find("; left)") != std::string::npos);
+  CHECK(report.text.find("left: a turning target there isn't seen: ") != std::string::npos);
+  CHECK(report.text.find("at work: deaf: left, unseen: ") != std::string::npos);
 }
 
 namespace {
