@@ -73,14 +73,15 @@ OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "v
 
 # Each option that names an output, with one: what a command then says that it wrote, on standard error.
 ROOM = "--scene", "meeting_room.gltf"
-SHORT = *ROOM, "--script", "studyA.yaml", "--set", "trials.for_each.seat=[S8]", "--replicates", 1
+STUDY = *ROOM, "--script", "studyA.yaml", "--set", "trials.for_each.seat=[S8]", "--set", "begin=2026-03-02T08:00:00"
+SHORT = *STUDY, "--replicates", 1
 COARSE = "--set", "spacing_m=2", "--set", "duration_s=2"
 WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--report", "run.html", "--zones", "zones.csv",
                        "--occupants", "who.csv"),
                       "rows.csv sums.md run.html zones.csv who.csv"),
            ("check",): ((*ROOM, "--suggest", "-o", "marks.yaml"), "marks.yaml"),
-           ("preview",): ((*SHORT, "--width", 64, "--height", 64, "-o", "room.png"), "room.png"),
-           ("export",): ((*SHORT, "-o", "run.glb"), "run.glb"), ("view",): ((*SHORT, "--to", 5, "-o", "v.html"), "v.html"),
+           ("preview",): ((*STUDY, "--width", 64, "--height", 64, "-o", "room.png"), "room.png"),
+           ("export",): ((*STUDY, "-o", "run.glb"), "run.glb"), ("view",): ((*STUDY, "--to", 5, "-o", "v.html"), "v.html"),
            ("coverage",): ((*ROOM, "--script", "studyB.yaml", *COARSE, "-o", "maps", "--report", "maps.html"),
                            "maps/coverage.csv maps.html"),
            ("walktest",): ((*ROOM, "--script", "walk_test.yaml", *COARSE[:2], "-o", "walk.csv", "--report", "walk.html"),
@@ -92,8 +93,8 @@ WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--repo
            ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--schedule", "day.csv", "--report",
                            "light.html"), "costs.csv lit.csv day.csv light.html"),
            ("log",): (("log.csv", "-o", "log_rows.csv", "--report", "log.html"), "log_rows.csv log.html"),
-           ("merge",): (("shards", "-o", "all.csv", *SHORT[2:-2], "--summary", "all.md"), "all.csv all.md"),
-           ("reconcile", "seal"): ((*SHORT, "--answer", "answer.json", "--out", "sealed"),
+           ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md"),
+           ("reconcile", "seal"): ((*STUDY, "--answer", "answer.json", "--out", "sealed"),
                                    "answer.json sealed/measured.csv sealed/commitment.sha256")}
 # Take minutes; day is a run.
 SLOW = {("day",), ("reconcile",), ("reconcile", "plan"), ("reconcile", "selftest"), ("dataset",), ("calibrate",),
