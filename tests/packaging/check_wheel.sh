@@ -15,7 +15,7 @@ for file in pirsim/_core.pyi pirsim/pirsim pirsim/py.typed pirsim/specs.py pirsi
   pirsim/data/sensors/EKMC1604111.yaml libembree libtbb dist-info/licenses/third_party/licences.toml; do
   grep -q "$file" "$scratch/content" || { echo "wheel: no $file in $wheel" >&2; exit 1; }
 done
-! grep -qE '\.(a|hpp|cmake)|share/|__pycache__' "$scratch/content" || { echo "wheel: more than a package in $wheel" >&2; exit 1; }
+! grep -qE '\.(a|hpp|cmake) |share/|__pycache__' "$scratch/content" || { echo "wheel: more than a package in $wheel" >&2; exit 1; }
 "$python" -m zipfile -e "$wheel" "$scratch/unpacked"
 chmod +x "$scratch/unpacked/pirsim/pirsim"
 python3 "$source/tests/packaging/check_licences.py" "$source" "$scratch"/unpacked/pirsim/{pirsim,_core*.so}
