@@ -53,7 +53,7 @@ struct SensingSpec {
 struct SummarySpec {
   std::vector<std::string> phases;  ///< rows in these phases count
   std::string reference_file;       ///< CSV with measured sums, or empty; beside the script, or shipped
-  Where reference_where;
+  Where where;
 };
 
 /// Person-to-person and chair-to-chair variation, drawn once a run and person.

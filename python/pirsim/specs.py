@@ -739,7 +739,7 @@ class Summary:
     """Rows in these phases count."""
     reference_file: str = ""
     """CSV with measured sums, or empty; beside the script, or a shipped one."""
-    reference_where: Where = _where()
+    where: Where = _where()
 
 
 @dataclass(slots=True)

@@ -248,7 +248,7 @@ std::vector<MeasuredCell> measured_cells(const ScriptSpec& script) {
   const io::NamedFile reference = reference_of(script);
   if (reference.path.empty()) return {};
   if (!reference.fault.empty())
-    throw Error(ErrorCode::io, script.summary.reference_where, "summary: reference: " + reference.fault);
+    throw Error(ErrorCode::io, script.summary.where, "summary: reference: " + reference.fault);
   return io::read_measured_cells(reference.path);
 }
 

@@ -734,8 +734,8 @@ class Words(unittest.TestCase):
     def test_unknown_names_come_with_the_nearest_or_the_list(self):
         self.assertIn("sensor 'motion' is not in the scene; there are PIR1, PIR2",
                       study_of("preview", "--beams", "motion", "-o", "x.png", code=2))
-        self.assertIn("rule: 'swept' is not known here; there are ",
-                      study("--set", "effects=[{soft_zone_edges: {rule: swept}}]", code=3).stderr)
+        self.assertIn("rule: 'brushed' is not known here; there are ",
+                      study("--set", "effects=[{soft_zone_edges: {rule: brushed}}]", code=3).stderr)
         self.assertIn("(did you mean 'soft_zone_edges'?)", pirsim("effects", "softzone", code=2).stderr)
         self.assertIn("entrance 'window' is not in meeting_room.gltf; there are door",
                       study("--set", "people.0.actions.0.enter=window", code=3).stderr)

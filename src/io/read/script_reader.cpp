@@ -18,7 +18,7 @@ SummarySpec read_summary(YamlMap& script) {
   SummarySpec summary;
   read_part(script, "summary", summary, [&](YamlMap& map) {
     summary.reference_file = map.text("reference");
-    summary.reference_where = map.where("reference");
+    summary.where = map.where("reference");
   });
   return summary;
 }

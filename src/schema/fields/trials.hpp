@@ -44,8 +44,7 @@ struct Fields<SummarySpec> {
       "Which rows the command line's --summary adds up, and what they are compared with.";
   static constexpr std::tuple all{
       FIELD(phases, "rows in these phases count"),
-      FIELD(reference_file, "CSV with measured sums, or empty; beside the script, or a shipped one"),
-      LABEL(reference_where)};
+      FIELD(reference_file, "CSV with measured sums, or empty; beside the script, or a shipped one"), LABEL(where)};
 };
 template <>
 struct Fields<EffectSpec> {
