@@ -40,6 +40,7 @@ struct OwnScene {
 /// Who lives in a home: drawn once for each. All ranges are `assumed`.
 struct HouseholdRangesSpec {
   double works = 0.55;          ///< probability that a resident goes to work
+  double works_at_home = 0.0;   ///< and that one works at home; together at most 1
   Range age_years{25.0, 80.0};  ///< of each
   Range visits_a_week{0.0, 2.0};
   Range shift_min{-45.0, 45.0};  ///< by how much all clocks of a household are later than those below

@@ -72,8 +72,9 @@ struct ProfileSpec {
 
 /// Where a resident is on working days.
 enum class Occupation {
-  works,   ///< away from `leaves` to `comes_home`
-  at_home  ///< retired, on leave, or works at home
+  works,         ///< away from `leaves` to `comes_home`
+  at_home,       ///< retired, or on leave
+  works_at_home  ///< at a place for work at these times, but for meals and breaks
 };
 
 struct ResidentSpec {

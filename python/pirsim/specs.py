@@ -526,7 +526,7 @@ class Resident:
 
     id: str = ""
     """As `--occupants` names them."""
-    occupation: Literal["works", "at_home"] = "at_home"
+    occupation: Literal["works", "at_home", "works_at_home"] = "at_home"
     age_years: float = 45.0
     """How often they get up at night goes by it."""
     bed: str = ""
@@ -547,7 +547,7 @@ class Household:
     wakes_on_free_days: Clock = field(default_factory=lambda: Clock(mean_h=8.5, sd_min=45.0))
     goes_to_bed: Clock = field(default_factory=lambda: Clock(mean_h=23.0))
     leaves: Clock = field(default_factory=lambda: Clock(mean_h=8.25, sd_min=20.0))
-    """Who works, on working days."""
+    """Who works, on working days; who works at home begins then."""
     comes_home: Clock = field(default_factory=lambda: Clock(mean_h=17.25, sd_min=40.0))
     lunch: Clock = field(default_factory=lambda: Clock(mean_h=13.0, sd_min=20.0))
     dinner: Clock = field(default_factory=lambda: Clock(mean_h=19.5))

@@ -45,7 +45,7 @@ constexpr const char* home_lines = R"(    visits_a_week: 1                   # e
     wakes: {mean: 07:00, sd_min: 30}
     wakes_on_free_days: {mean: 08:30, sd_min: 45}
     goes_to_bed: {mean: 23:00, sd_min: 30}
-    leaves: {mean: 08:15, sd_min: 20}  # who works
+    leaves: {mean: 08:15, sd_min: 20}  # who works; who works at home begins
     comes_home: {mean: 17:15, sd_min: 40}
     lunch: {mean: 13:00, sd_min: 20}
     dinner: {mean: 19:30, sd_min: 30}
@@ -78,7 +78,7 @@ std::string household_lines(const DayOptions& options) {
   for (int i = 1; i <= options.residents; ++i) {
     const bool works = i % 2 == 1;
     text << "      - {id: resident_" << i << ", occupation: " << (works ? "works" : "at_home")
-         << ", age_years: " << (works ? 40 : 68) << "}\n";
+         << ", age_years: " << (works ? 40 : 68) << "}" << (i == 1 ? "    # or at_home, works_at_home" : "") << '\n';
   }
   text << home_lines;
   return text.str();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.hpp"
 #include "dataset/floor_plan.hpp"
 #include "dataset/room_reader.hpp"
 #include "io/read/reader_parts.hpp"
@@ -23,6 +24,12 @@ HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics&
   io::YamlMap map(node, faults, "household");
   HouseholdRangesSpec ranges;
   ranges.works = map.number("works", ranges.works, {.min = 0.0, .max = 1.0});
+  ranges.works_at_home = map.number("works_at_home", ranges.works_at_home, {.min = 0.0, .max = 1.0});
+  constexpr double rounding = 1e-9;
+  if (ranges.works + ranges.works_at_home > 1.0 + rounding)
+    faults.error(
+        map.where("works_at_home"),
+        "household: works_at_home: is more than 1 together with `works`, which is " + shortest_number(ranges.works));
   ranges.age_years = read_range(map, "age_years", ranges.age_years, {.min = 16.0, .max = 110.0});
   ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week, {.min = 0.0, .max = 7.0});
   ranges.shift_min = read_range(map, "shift_min", ranges.shift_min, {.min = -120.0, .max = 120.0});
@@ -49,7 +56,10 @@ HouseholdSpec draw_household(const HouseholdRangesSpec& ranges, const SceneSpec&
   for (std::size_t i = 1; i <= beds_of(home); ++i) {
     ResidentSpec& resident = household.residents.emplace_back();
     resident.id = "resident_" + std::to_string(i);
-    resident.occupation = stream.uniform() < ranges.works ? Occupation::works : Occupation::at_home;
+    const double u = stream.uniform();
+    resident.occupation = u < ranges.works                          ? Occupation::works
+                          : u < ranges.works + ranges.works_at_home ? Occupation::works_at_home
+                                                                    : Occupation::at_home;
     resident.age_years = std::round(draw(ranges.age_years, stream));
   }
   return household;

@@ -121,7 +121,8 @@ struct Words<Role> {
 };
 template <>
 struct Words<Occupation> {
-  static constexpr WordList<Occupation, 2> all{{{"works", Occupation::works}, {"at_home", Occupation::at_home}}};
+  static constexpr WordList<Occupation, 3> all{
+      {{"works", Occupation::works}, {"at_home", Occupation::at_home}, {"works_at_home", Occupation::works_at_home}}};
 };
 template <>
 struct Words<Severity> {

@@ -19,6 +19,7 @@ constexpr double breakfast_s = 25.0 * minute_s, breakfast_cooking_s = 10.0 * min
 constexpr double lunch_s = 55.0 * minute_s, dinner_s = 60.0 * minute_s;                  // 30 to 75
 constexpr double lunch_cooking_s = 45.0 * minute_s, dinner_cooking_s = 50.0 * minute_s;  // 20 to 60
 constexpr double shortest_pastime_s = 5.0 * minute_s;
+constexpr double work_between_breaks_s = 90.0 * minute_s, break_s = 10.0 * minute_s;  // 60 to 120, 5 to 15
 
 /// Of this mean, a third or three times as long in one of a hundred cases.
 double about(Stream& stream, double mean) {
@@ -90,11 +91,12 @@ void sleep_and_wash(StayLine& day, const Nights& nights, Stream& stream) {
   day.put(HomeActivity::sleep, nights.goes_to_bed_s, home_day_ends_s);
 }
 
-/// Work, or what else takes somebody out: errands, sport, friends.
-void go_out(StayLine& day, const HouseholdSpec& household, bool to_work, Stream& stream) {
-  if (to_work) {
+/// Work, or what takes somebody out who has none today: errands, sport, friends.
+void spend_the_day(StayLine& day, const HouseholdSpec& household, Occupation today, Stream& stream) {
+  if (today != Occupation::at_home) {
     const double leaves_s = around(stream, household.leaves);
-    return day.put(HomeActivity::away, leaves_s, std::max(leaves_s, around(stream, household.comes_home)));
+    const double until_s = std::max(leaves_s, around(stream, household.comes_home));
+    return day.put(today == Occupation::works ? HomeActivity::away : HomeActivity::work, leaves_s, until_s);
   }
   constexpr double goes_out = 0.85;               // assumed (0.7-0.95): share of days
   constexpr double first_h = 9.5, last_h = 17.5;  // assumed: when
@@ -102,6 +104,19 @@ void go_out(StayLine& day, const HouseholdSpec& household, bool to_work, Stream&
   const double share = stream.uniform(), when = stream.uniform(), length_s = about(stream, mean_s);
   const double from_s = (first_h + (last_h - first_h) * when) * hour_s;
   if (share < goes_out) day.put(HomeActivity::away, from_s, from_s + length_s);
+}
+
+/// Rest between stretches of work, unless hardly any work is left after it.
+void take_breaks(StayLine& day, Stream& stream) {
+  for (const HomeStay& stretch : day.joined()) {
+    if (stretch.activity != HomeActivity::work) continue;
+    for (double now = stretch.from_s;;) {
+      const double from_s = now + about(stream, work_between_breaks_s);
+      now = from_s + about(stream, break_s);
+      if (now + break_s > stretch.to_s) break;
+      day.put(HomeActivity::rest, from_s, now);
+    }
+  }
 }
 
 /// One of those at home cooks, and all at home eat.
@@ -187,18 +202,18 @@ double night_visits(double age_years) {
 
 HomeDay draw_home_day(const HouseholdSpec& household, std::uint64_t seed, std::uint32_t run, std::int64_t day) {
   const bool works = is_working_day(day);
+  const auto today = [&](std::size_t i) { return works ? household.residents[i].occupation : Occupation::at_home; };
   std::vector<StayLine> days(household.residents.size(), StayLine(HomeActivity::rest));
   std::vector<Stream> streams;
   std::vector<Nights> nights;
   for (std::size_t i = 0; i < days.size(); ++i) {
-    const bool to_work = works && household.residents[i].occupation == Occupation::works;
     Stream& stream = streams.emplace_back(StreamKey{seed, run, static_cast<std::uint32_t>(i), Purpose::home_day});
     const double wakes_s = around(stream, works ? household.wakes : household.wakes_on_free_days);
     const double goes_to_bed_s = around(stream, household.goes_to_bed);
     nights.push_back({std::clamp(wakes_s, home_day_begins_s, home_day_ends_s),
                       std::clamp(goes_to_bed_s, std::max(wakes_s, home_day_begins_s), home_day_ends_s)});
     sleep_and_wash(days[i], nights[i], stream);
-    go_out(days[i], household, to_work, stream);
+    spend_the_day(days[i], household, today(i), stream);
   }
   Stream together({seed, run, 0, Purpose::home_meals});
   const double lunch_at_s = around(together, household.lunch), dinner_at_s = around(together, household.dinner);
@@ -211,6 +226,7 @@ HomeDay draw_home_day(const HouseholdSpec& household, std::uint64_t seed, std::u
   if (visited < household.visits_a_week / 7.0) drawn.visits.push_back({comes_s, goes_s});
   for (std::size_t i = 0; i < days.size(); ++i) {
     pass_the_time(days[i], streams[i]);
+    if (today(i) == Occupation::works_at_home) take_breaks(days[i], streams[i]);
     go_to_the_toilet(days[i], nights[i], household.residents[i].age_years, streams[i]);
     drawn.residents.push_back(days[i].joined());
   }

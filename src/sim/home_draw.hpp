@@ -9,8 +9,8 @@
 
 namespace pirsim::sim {
 
-enum class HomeActivity { sleep, toilet, wash, cook, eat, chores, tv, read, hobby, rest, away };
-inline constexpr std::size_t n_home_activities = 11;
+enum class HomeActivity { sleep, toilet, wash, cook, eat, chores, tv, read, hobby, rest, work, away };
+inline constexpr std::size_t n_home_activities = 12;
 
 /// A day of a household begins here, as seconds of its date, and lasts 24 hours.
 inline constexpr double home_day_begins_s = 3600.0 * home_from_h;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/random.hpp"
 #include "sim/action_line.hpp"
 #include "sim/day_draw.hpp"
 #include "sim/home_draw.hpp"
@@ -49,6 +50,8 @@ class HomeDayPlan {
         door_(schedule_.entrances.empty() ? study.scene().entrances.front().id : schedule_.entrances.front()),
         lines_(trial_.people.size(), ActionLine(schedule_)),
         state_(trial_.people.size()) {
+    for (std::size_t i = 0; i < trial_.people.size(); ++i)
+      conduct_.emplace_back(StreamKey{study.seed(), run, static_cast<std::uint32_t>(i), Purpose::schedule_conduct});
     drawn_ = draw_home_day(*schedule_.household, study.seed(), run, day_of(study, run));
   }
 
@@ -101,6 +104,8 @@ class HomeDayPlan {
     if (spot == nullptr) return stay_there(line, stay, manner);
     spot->taken_until_s = stay.to_s;
     if (was_there || spot->id != trial_.people[person].spec.part->seat) take(line, stay.from_s, *spot, manner.phase);
+    if (stay.activity == HomeActivity::work && spot->posture == Posture::sit)
+      return work_there(line, stay, conduct_[person], manner.phase);
     line.then(action::Wait{until_next_s, fitting(manner.activity, spot->posture)}, manner.phase);
   }
 
@@ -117,6 +122,16 @@ class HomeDayPlan {
 
   static void stay_there(ActionLine& line, const HomeStay& stay, const HomeManner& manner) {
     line.at(stay.from_s, action::Wait{until_next_s}, manner.phase);
+  }
+
+  /// As at a desk of an office: one thing after the other.
+  static void work_there(ActionLine& line, const HomeStay& stay, Stream& stream, const char* phase) {
+    for (double left_s = stay.to_s - stay.from_s; left_s > 0.0;) {
+      action::Work work = draw_desk_work(stream);
+      left_s -= work.duration_s;
+      if (left_s <= 0.0) work.duration_s = until_next_s;
+      line.then(work, phase);
+    }
   }
 
   /// What a person of natural style can do in that posture.
@@ -160,6 +175,7 @@ class HomeDayPlan {
   std::string door_;
   std::vector<ActionLine> lines_;
   std::vector<State> state_;
+  std::vector<Stream> conduct_;  ///< (n_people)
   HomeDay drawn_;
 };
 
@@ -187,6 +203,8 @@ HomeManner manner_of(HomeActivity activity) {
       return {"hobby", Activity::reading, {"work", "play", "eat"}};
     case HomeActivity::rest:
       return {"resting", Activity::watching_tv, {"rest", "tv", "eat"}};
+    case HomeActivity::work:
+      return {"working", Activity::typing, {"work"}};
     case HomeActivity::away:
       break;
   }

@@ -97,7 +97,7 @@ struct Fields<HouseholdSpec> {
       FIELD(wakes, "on working days"),
       FIELD(wakes_on_free_days),
       FIELD(goes_to_bed),
-      FIELD(leaves, "who works, on working days"),
+      FIELD(leaves, "who works, on working days; who works at home begins then"),
       FIELD(comes_home),
       FIELD(lunch),
       FIELD(dinner)};

@@ -133,3 +133,97 @@ TEST_CASE("a day doesn't depend on other days, and a resident's not on who moves
   CHECK(more.residents[0].back().from_s == day.residents[0].back().from_s);
   CHECK(draw_home_day(household, 5, 7, monday + 7).residents[0].front().to_s != day.residents[0].front().to_s);
 }
+
+namespace {
+
+constexpr double survey_work_h = 7.4;  ///< with the ways there. Ref: [Idescat2011]
+constexpr double stated_desk_h = 6.6;  ///< docs/physics/homes.md
+
+HouseholdSpec alone(Occupation occupation) {
+  HouseholdSpec household;
+  household.residents = {{"ann", occupation, 40.0, {}, {}}};
+  household.dinner.mean_h = 21.0;  // cooking ends no working day
+  return household;
+}
+
+struct Sampled {
+  double mean = 0.0, standard_error = 0.0;
+  bool agrees(double expected, double rounding = 0.0) const {
+    return std::abs(mean - expected) < 4.0 * standard_error + rounding;
+  }
+};
+
+Sampled sampled(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const double value : values) sum += value;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) squares += (value - sum / n) * (value - sum / n);
+  return {sum / n, std::sqrt(squares / (n - 1.0) / n)};
+}
+
+/// Hours of the working days: from the first work to the last, and at work.
+struct DeskHours {
+  Sampled span, desk;
+};
+DeskHours desk_hours(const HouseholdSpec& household) {
+  std::vector<double> spans, desks;
+  for (std::uint32_t day = 0; day < n_days; ++day) {
+    if (day % 7 >= 5) continue;
+    double first_s = 0.0, last_s = 0.0, sum_s = 0.0;
+    const HomeDay drawn = draw_home_day(household, 5, day, monday + day);
+    for (const HomeStay& stay : drawn.residents[0]) {
+      if (stay.activity != HomeActivity::work) continue;
+      if (sum_s == 0.0) first_s = stay.from_s;
+      last_s = stay.to_s;
+      sum_s += stay.to_s - stay.from_s;
+    }
+    spans.push_back((last_s - first_s) / 3600.0);
+    desks.push_back(sum_s / 3600.0);
+  }
+  return {sampled(spans), sampled(desks)};
+}
+
+bool alike(const std::vector<HomeStay>& a, const std::vector<HomeStay>& b) {
+  return std::ranges::equal(a, b, [](const HomeStay& x, const HomeStay& y) {
+    return x.activity == y.activity && x.from_s == y.from_s && x.to_s == y.to_s;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("who works at home is at the desk while others are at work, but for lunch and breaks") {
+  const DeskHours hours = desk_hours(alone(Occupation::works_at_home));
+  CAPTURE(hours.span.mean, hours.span.standard_error, hours.desk.mean, hours.desk.standard_error);
+  CHECK(hours.span.agrees(17.25 - 8.25));
+  CHECK(hours.desk.agrees(stated_desk_h, 0.05));
+  // The survey's hours of work, less ways: assumed, 40 to 80 minutes.
+  CHECK(hours.desk.mean > survey_work_h - 80.0 / 60.0);
+  CHECK(hours.desk.mean < survey_work_h - 40.0 / 60.0);
+  for (const Occupation other : {Occupation::at_home, Occupation::works}) {  // must fail
+    CHECK_FALSE(desk_hours(alone(other)).span.agrees(17.25 - 8.25));
+    CHECK_FALSE(desk_hours(alone(other)).desk.agrees(stated_desk_h, 0.05));
+  }
+}
+
+TEST_CASE("who works at home gets up, goes to bed and spends free days as if they worked elsewhere") {
+  int same = 0;
+  for (std::uint32_t day = 0; day < 70; ++day) {
+    const auto of = [&](Occupation occupation) {
+      return draw_home_day(alone(occupation), 5, day, monday + day).residents[0];
+    };
+    const std::vector<HomeStay> there = of(Occupation::works_at_home), out = of(Occupation::works);
+    const auto is_work = [](const HomeStay& stay) { return stay.activity == HomeActivity::work; };
+    const auto is_out = [](const HomeStay& stay) { return stay.activity == HomeActivity::away; };
+    CAPTURE(day);
+    const auto washes = [](const HomeStay& stay) { return stay.activity == HomeActivity::wash; };
+    CHECK(std::ranges::find_if(there, washes)->from_s == std::ranges::find_if(out, washes)->from_s);
+    if (day % 7 >= 5) {
+      CHECK(alike(there, out));
+    } else {
+      CHECK_FALSE(alike(there, out));
+      CHECK(std::ranges::none_of(there, is_out));
+      same += std::ranges::find_if(there, is_work)->from_s == std::ranges::find_if(out, is_out)->from_s ? 1 : 0;
+    }
+  }
+  CHECK(same >= 45);  // of 50: at times somebody is on the toilet when work begins
+}

@@ -100,3 +100,60 @@ TEST_CASE("each of a couple gets out of bed at their own side, while the other o
   std::ranges::find(narrow.doors, "bedroom", &DoorSpec::id)->open_deg = 90.0;
   CHECK(over(compile(std::move(narrow), test::shipped_script("flat_week.yaml", {"sensing.response=zones"}))) == 1);
 }
+
+namespace {
+
+constexpr const char* ann_works_at_home = "schedule.household.residents.0.occupation=works_at_home";
+
+/// Seconds that the first of the people is at work by a day's plan, each on a seat for it.
+double seconds_at_work(const Model& model, std::uint32_t run) {
+  const sim::DayPlan plan = sim::plan_home_day(model.compiled(), run);
+  const std::vector<SeatSpec>& seats = model.compiled().scene().seats;
+  std::string seat;
+  double since_s = 0.0, sum_s = 0.0;
+  bool works = false;
+  for (const ScriptedAction& action : plan.front()) {
+    if (action.at_s) {
+      if (works) sum_s += *action.at_s - since_s;
+      const auto* sit = std::get_if<action::Sit>(&action.what);
+      seat = sit != nullptr ? sit->seat : "";
+      since_s = *action.at_s;
+      works = false;
+    }
+    if (!std::holds_alternative<action::Work>(action.what)) continue;
+    const auto at = std::ranges::find(seats, seat, &SeatSpec::id);
+    works = at != seats.end() && std::ranges::find(at->uses, "work") != at->uses.end();
+  }
+  return sum_s;
+}
+
+bool lacks_place_for_work(const Model& model) {
+  return std::ranges::any_of(check_study(model).warnings, [](const Issue& warning) {
+    return warning.message.find("no place for working (`for: [work]`") != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("who works at home does so on a seat for work, for as long as the day has it", "[people]") {
+  const auto compiled = [](SceneSpec scene, const std::vector<std::string>& overrides) {
+    return compile(std::move(scene), test::shipped_script("flat_week.yaml", overrides));
+  };
+  const Model model = compiled(test::shipped_scene("flat.gltf"), {"sensing.response=zones", ann_works_at_home});
+  CHECK_FALSE(lacks_place_for_work(model));
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
+    const sim::HomeDay day = sim::draw_home_day(*model.compiled().trial_of(run).schedule->household,
+                                                model.compiled().seed(), run, 20514 + run);
+    double drawn_s = 0.0;
+    for (const sim::HomeStay& stay : day.residents[0])
+      if (stay.activity == sim::HomeActivity::work) drawn_s += stay.to_s - stay.from_s;
+    CAPTURE(run, drawn_s);
+    CHECK(std::abs(seconds_at_work(model, run) - drawn_s) < 30.0);  // each change is in whole seconds
+    CHECK((drawn_s > 0.0) == (run < 5));
+    CHECK(seconds_at_work(flat(), run) == 0.0);  // a twin who works elsewhere
+  }
+  SceneSpec bare = test::shipped_scene("flat.gltf");
+  for (SeatSpec& seat : bare.seats) std::ranges::replace(seat.uses, "work", "play");
+  CHECK(lacks_place_for_work(compiled(bare, {"sensing.response=zones", ann_works_at_home})));
+  CHECK_FALSE(lacks_place_for_work(compiled(bare, {"sensing.response=zones"})));
+}

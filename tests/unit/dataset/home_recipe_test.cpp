@@ -109,6 +109,25 @@ TEST_CASE("each home has a household of its own within the ranges, the same on a
   CHECK(std::abs(workers - 0.5 * all) < 4.0 * std::sqrt(0.25 * all));
 }
 
+TEST_CASE("some of a recipe's residents work at home where it says so, and nobody else is another", "[dataset][home]") {
+  const RecipeSpec plain = homes("residents: [1, 3], household: {works: 0.5}");
+  const RecipeSpec some = homes("residents: [1, 3], household: {works: 0.5, works_at_home: 0.3}");
+  int at_desks = 0, all = 0;
+  for (int room = 1; room <= 40; ++room) {
+    HouseholdSpec without = household_of(plain, room), with = household_of(some, room);
+    for (std::size_t i = 0; i < with.residents.size(); ++i, ++all) {
+      if (with.residents[i].occupation != Occupation::works_at_home) continue;
+      CHECK(without.residents[i].occupation == Occupation::at_home);
+      with.residents[i].occupation = Occupation::at_home;
+      ++at_desks;
+    }
+    CHECK(with == without);
+  }
+  CHECK(std::abs(at_desks - 0.3 * all) < 4.0 * std::sqrt(0.3 * 0.7 * all));
+  CHECK_THAT(faults_of("household: {works: 0.5, works_at_home: 0.6}"),
+             contains("is more than 1 together with `works`"));
+}
+
 TEST_CASE("what one home is doesn't depend on how many there are", "[dataset][home]") {
   const RecipeSpec many = homes("residents: [1, 3]");
   RecipeSpec few = many;
