@@ -1,5 +1,8 @@
 #include "dataset/flat_reader.hpp"
 
+#include <algorithm>
+
+#include "core/text.hpp"
 #include "dataset/room_reader.hpp"
 
 namespace pirsim::dataset {
@@ -25,6 +28,28 @@ std::vector<Value> read_words(io::YamlMap& map, const std::string& key, std::vec
   if (items.empty())
     map.faults().error(node->where(), key + ": expected " + names.front() + " or another of its words");
   return values.empty() ? std::move(otherwise) : values;
+}
+
+/// Refuses what is given and no flat of these ranges can have.
+void refuse_vain_wishes(io::YamlMap& map, const FlatSpec& spec) {
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    map.faults().error(map.where(key), key + ": " + why);
+  };
+  // Beside the living room and the study, a bedroom for every two.
+  const int rooms_with_study = std::max(3, 2 + (spec.residents.least + 1) / 2);
+  if (map.has("study") && spec.study > 0.0 && spec.rooms.most < rooms_with_study)
+    refuse("study", "a flat for " + counted(static_cast<std::size_t>(spec.residents.least), "resident") +
+                        " has one from `rooms: " + std::to_string(rooms_with_study) + "` on, and `rooms` is " +
+                        std::to_string(spec.rooms.most) + " at most");
+  const auto hangs = [](const auto& places, auto place) { return std::ranges::find(places, place) != places.end(); };
+  const bool in_rooms = hangs(spec.sensors_at, SensorsAt::rooms);
+  if (map.has("mount") && !in_rooms)
+    refuse("mount", "is of sensors in rooms, and all hang above doorways (`sensors_at: doorway`)");
+  for (const char* key : {"sensor_height_m", "sensor_tilt_deg"}) {
+    if (!map.has(key) || (in_rooms && hangs(spec.mounts, Mount::corner))) continue;
+    refuse(key, std::string("is of sensors in corners, and all hang ") +
+                    (in_rooms ? "on ceilings (`mount: ceiling`)" : "above doorways (`sensors_at: doorway`)"));
+  }
 }
 
 }  // namespace
@@ -56,6 +81,7 @@ FlatSpec read_flat_keys(io::YamlMap& map) {
   }
   spec.sensor_height_m = read_range(map, "sensor_height_m", spec.sensor_height_m, {.min = 0.1, .max = 5.0});
   spec.sensor_tilt_deg = read_range(map, "sensor_tilt_deg", spec.sensor_tilt_deg, {.min = -90.0, .max = 90.0});
+  refuse_vain_wishes(map, spec);
   return spec;
 }
 

@@ -1,5 +1,7 @@
 #include "dataset/room_reader.hpp"
 
+#include <algorithm>
+
 namespace pirsim::dataset {
 namespace {
 
@@ -111,6 +113,12 @@ RoomSpec read_room_keys(io::YamlMap& map) {
     spec.desk_width_m = read_range(map, "desk_width_m", spec.desk_width_m, {.min = 1.0, .max = 2.4});
     spec.desk_screens = map.number("desk_screens", spec.desk_screens, share);
   }
+  // What is given and no room of these ranges can have.
+  if (map.has("cut_share") && !map.has("l_shaped"))
+    map.faults().error(map.where("cut_share"), "cut_share: is of rooms that lack a corner: give `l_shaped`, too");
+  if (map.has("desk_screens") && spec.desk_screens > 0.0 &&
+      std::ranges::find(spec.orders, DeskOrder::islands) == spec.orders.end())
+    map.faults().error(map.where("desk_screens"), "desk_screens: is of desks in islands, and `desks` has none");
   spec.cupboards = read_count(map, "cupboards", spec.cupboards, {.min = 0, .max = 50});
   spec.partitions = read_count(map, "partitions", spec.partitions, {.min = 0, .max = 50});
   if (!map.has("sensors")) {

@@ -55,7 +55,7 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
           ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("--log", "nowhere.csv"),
           ("room",): ("-o", "room.gltf"), ("home",): ("-o", "flat.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
-ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
+ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
 HOME_VALUES = {"--set": "own_kitchen=0", "--rooms": "2", "--size": "60", "--height": "2.5", "--layout": "hall",
                "--sensors-at": "doorway", "--mount": "ceiling", "--model": "EKMC1601111"}

@@ -279,6 +279,27 @@ TEST_CASE("faults of a flat's ranges are told with their place and the nearest n
   CHECK_THAT(faults_of("rooms: {a: 1}\n"), contains("flat.yaml:1:8"));
 }
 
+TEST_CASE("what is asked for and no flat of these ranges can have is refused with what it needs", "[flat]") {
+  CHECK_THAT(faults_of("rooms: 2\nstudy: 1\n"),
+             contains("flat.yaml:2:8") && contains("`rooms: 3` on") && contains("2 at most"));
+  CHECK_THAT(faults_of("rooms: 3\nresidents: 3\nstudy: 1\n"), contains("`rooms: 4` on"));
+  for (const char* fine : {"rooms: 3\nresidents: 2\nstudy: 1\n", "rooms: [1, 3]\nstudy: 1\n", "rooms: 2\nstudy: 0\n",
+                           "rooms: 4\nresidents: 4\nstudy: 1\n"})
+    CHECK(faults_of(fine).empty());
+  CHECK_THAT(faults_of("sensors_at: doorway\nmount: ceiling\n"), contains("flat.yaml:2:8") && contains("doorways"));
+  CHECK_THAT(faults_of("mount: ceiling\nsensor_height_m: 2\n"), contains("ceilings"));
+  CHECK_THAT(faults_of("sensors_at: doorway\nsensor_tilt_deg: 5\n"), contains("doorways"));
+  CHECK(faults_of("sensors_at: [room, doorway]\nmount: [corner, ceiling]\nsensor_tilt_deg: 5\n").empty());
+  // What the bounds say is so: flats with a study from there on, none below.
+  const auto has_study = [](int rooms, int residents) {
+    FlatSpec spec;
+    spec.rooms = {rooms, rooms}, spec.residents = {residents, residents}, spec.study = 1.0;
+    const DrawnFlat flat = drawn(spec, 1);
+    return std::ranges::find(flat.rooms, FlatRoomKind::study, &FlatRoom::kind) != flat.rooms.end();
+  };
+  CHECK((!has_study(2, 1) && !has_study(3, 3) && has_study(3, 2) && has_study(4, 3) && has_study(4, 4)));
+}
+
 TEST_CASE("an unknown model of a flat's sensors is told where it stands", "[flat]") {
   FlatSpec spec;
   spec.models = {"EKMC160111"};
