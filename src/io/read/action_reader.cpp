@@ -127,23 +127,40 @@ Action read_follow(const YamlNode& node, Diagnostics& faults) {
   return follow;
 }
 
+enum class Form { scalar, map, either };
+
 struct ActionKind {
   const char* key;
   Action (*read)(const YamlNode&, Diagnostics&);
+  Form form;
+  const char* example;
 };
-constexpr std::array<ActionKind, 13> kinds{{{"wait_s", read_wait_s},
-                                            {"wait", read_wait},
-                                            {"appear", read_appear},
-                                            {"enter", read_enter},
-                                            {"walk", read_walk},
-                                            {"sit", read_sit},
-                                            {"lie", read_lie},
-                                            {"stand", read_stand},
-                                            {"work", read_work},
-                                            {"rise", read_rise},
-                                            {"turn", read_turn},
-                                            {"leave", read_leave},
-                                            {"follow", read_follow}}};
+constexpr std::array<ActionKind, 13> kinds{
+    {{"wait_s", read_wait_s, Form::scalar, "{wait_s: 60}"},
+     {"wait", read_wait, Form::map, "{wait: {duration_s: 60}}"},
+     {"appear", read_appear, Form::either, "{appear: bed}"},
+     {"enter", read_enter, Form::scalar, "{enter: door, at: \"09:00\"}"},
+     {"walk", read_walk, Form::map, "{walk: {to_xz_m: [[1, -2], [3, -2]]}}"},
+     {"sit", read_sit, Form::either, "{sit: S1, at: \"09:00\"}"},
+     {"lie", read_lie, Form::either, "{lie: bed, at: \"23:00\"}"},
+     {"stand", read_stand, Form::either, "{stand: stove, at: \"12:00\"}"},
+     {"work", read_work, Form::map, "{work: {duration_s: 180}}"},
+     {"rise", read_rise, Form::scalar, "{rise: , at: \"10:00\"}"},
+     {"turn", read_turn, Form::map, "{turn: {heading_deg: 90}}"},
+     {"leave", read_leave, Form::scalar, "{leave: door, at: \"17:00\"}"},
+     {"follow", read_follow, Form::map, "{follow: {t_x_z: [[0, 1, -2], [5, 3, -2]]}}"}}};
+
+/// A value of another form than the action takes is told with an example.
+Action read_value(const ActionKind& kind, const YamlNode& value, Diagnostics& faults) {
+  Diagnostics told;
+  Action action = kind.read(value, told);
+  const bool fits = (value.is_map() && kind.form != Form::scalar) || (value.is_scalar() && kind.form != Form::map);
+  for (const Issue& issue : told.issues()) {
+    const bool is_of_form = !fits && issue.where == value.where();
+    faults.error(issue.where, issue.message + (is_of_form ? std::string("; for example ") + kind.example : ""));
+  }
+  return action;
+}
 
 std::vector<std::string> action_names() {
   std::vector<std::string> names;
@@ -205,7 +222,7 @@ ScriptedAction read_action_map(const YamlNode& node, const ScriptTime& time, Dia
       continue;
     }
     action.where = map.where(kind.key);
-    action.what = kind.read(*map.child(kind.key), faults);
+    action.what = read_value(kind, *map.child(kind.key), faults);
     ++found;
   }
   const std::vector<YamlKey> keys = node.keys();

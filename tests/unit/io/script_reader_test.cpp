@@ -133,3 +133,25 @@ TEST_CASE("a dollar sign that stands for itself is written so that it is read so
   CHECK(script.trials.front().people.front().actions.back().phase == "cost ${x} or ${y");
   CHECK(read(io::to_yaml(script)).trials.front().people.front().actions.back().phase == "cost ${x} or ${y");
 }
+
+TEST_CASE("an action's value of another form is told with an example that can be read") {
+  const auto told = [](const std::string& action) {
+    return fault("pirsim_script: 1\nbegin: 2026-03-02T08:00\npeople:\n  - id: a\n    actions:\n      - " + action +
+                 "\n");
+  };
+  CHECK_THAT(told("enter: {door: x}"), contains("s.yaml:6:16: error: enter: expected a text, got a map; for example "
+                                                "{enter: door, at: \"09:00\"}"));
+  for (const char* wrong :
+       {"wait_s: {s: 60}", "wait: 60", "appear: [1, 2]", "enter: [door]", "walk: 3", "sit: [S1]", "lie: [bed]",
+        "stand: [stove]", "work: 60", "rise: [now]", "turn: 90", "leave: {door: x}", "follow: 3"}) {
+    const std::string text = told(wrong);
+    CAPTURE(wrong, text);
+    const auto at = text.find("; for example ");
+    REQUIRE(at != std::string::npos);
+    const std::string example = text.substr(at + 14, text.find('\n', at) - at - 14);
+    CHECK(told(example).empty());
+    CHECK(example.substr(1, example.find(':')) == std::string(wrong).substr(0, example.find(':')));
+  }
+  CHECK(told("wait_s: -3").find("for example") == std::string::npos);  // the form is right
+  CHECK(told("sit: {seats: S1}").find("for example") == std::string::npos);
+}
