@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/session.hpp"
+#include "core/text.hpp"
 #include "studies/campaign.hpp"
 
 namespace pirsim::app {
@@ -46,9 +47,10 @@ void finish(const DatasetWork& work, const dataset::RecipeSpec& recipe, const da
             const StopRequest& stop) {
   if (!dataset::finish_dataset(recipe, work.folder, options))
     stop_at(stop, "before the dataset was described; continue with --finish");
-  tell_written({{work.folder / "datapackage.json",
-                 std::to_string(recipe.n_rooms()) + " rooms, " + std::to_string(recipe.n_room_days()) + " room-days"}},
-               work.inputs.verbosity);
+  tell_written(
+      {{work.folder / "datapackage.json", counted(static_cast<std::size_t>(recipe.n_rooms()), "room") + ", " +
+                                              counted(static_cast<std::size_t>(recipe.n_room_days()), "room-day")}},
+      work.inputs.verbosity);
 }
 
 void make(const DatasetWork& work, const dataset::RecipeSpec& recipe, const dataset::DatasetOptions& options,

@@ -5,6 +5,7 @@
 #include "app/commands.hpp"
 #include "app/drawn_scene.hpp"
 #include "app/session.hpp"
+#include "core/text.hpp"
 #include "dataset/flat_reader.hpp"
 #include "dataset/recipe.hpp"
 #include "pirsim/flat.hpp"
@@ -36,8 +37,8 @@ std::string about(const dataset::DrawnFlat& flat) {
   for (const DoorSpec& door : flat.scene.doors) doors.push_back(door.id);
   text << "flat " << flat.number << ", " << flat.width_m << " x " << flat.depth_m << " x " << flat.height_m
        << " m, floor " << std::fixed << std::setprecision(2) << flat.scene.floor.area_m2() << " m2, for "
-       << flat.residents << (flat.residents == 1 ? " resident" : " residents") << ", rooms" << listed(rooms)
-       << ", doors" << listed(doors) << ", sensors" << listed(flat.scene.sensors) << "; found at try " << flat.tries;
+       << counted(static_cast<std::size_t>(flat.residents), "resident") << ", rooms" << listed(rooms) << ", doors"
+       << listed(doors) << ", sensors" << listed(flat.scene.sensors) << "; found at try " << flat.tries;
   return std::move(text).str();
 }
 

@@ -5,6 +5,7 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "app/study_run.hpp"
+#include "core/text.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/campaign.hpp"
@@ -73,7 +74,7 @@ void merge(const MergeOptions& options) {
     write_summary(tally->finish(), *file, options.summary, script.name, merged.notes.remarks(), options.verbosity);
   }
   if (options.verbosity != Verbosity::quiet) {
-    std::cerr << "merged " << merged.runs.count() << " runs, " << merged.rows << " rows\n";
+    std::cerr << "merged " << counted(merged.runs.count(), "run") << ", " << counted(merged.rows, "row") << '\n';
   }
   tell_written({{options.output}, {options.summary}}, options.verbosity);
   tell(merged.notes, options.verbosity);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "pirsim/error.hpp"
 #include "studies/run_film.hpp"
 
@@ -30,7 +31,7 @@ void require_usual(const FilmSize& film, double seconds, Size size) {
   if (size == Size::any || bytes <= film_bytes) return;
   std::ostringstream text;
   text << film.what << " would have about " << bytes_in_words(bytes) << " (" << std::llround(seconds) << " s, "
-       << film.n_people << (film.n_people == 1 ? " person, " : " people, ") << film.keys_per_s
+       << counted(static_cast<std::size_t>(film.n_people), "person", "people") << ", " << film.keys_per_s
        << " keys a second): take a part with --from and --to, fewer --keys-per-s, or give --large";
   throw Error(ErrorCode::usage, text.str());
 }

@@ -8,6 +8,7 @@
 
 #include "app/output_size.hpp"
 #include "app/session.hpp"
+#include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/compression.hpp"
 #include "io/write/casas_writer.hpp"
@@ -382,7 +383,7 @@ void announce(const std::string& option, std::size_t first_bytes, const Model& m
   const double bytes = static_cast<double>(first_bytes) * model.n_runs();
   if (verbosity == Verbosity::quiet || bytes < worth_telling) return;
   std::ostringstream text;
-  text << std::setprecision(2) << option << ": the first of " << model.n_runs() << " runs has "
+  text << std::setprecision(2) << option << ": the first of " << counted(model.n_runs(), "run") << " has "
        << static_cast<double>(first_bytes) * 1e-6 << " MB, so all will have about " << bytes * 1e-9
        << " GB before compression\n";
   std::cerr << text.str();

@@ -9,6 +9,7 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "app/study_outputs.hpp"
+#include "core/text.hpp"
 #include "pirsim/study.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
@@ -81,17 +82,17 @@ std::string describe(const io::FailedRun& run) {
 
 void tell(const io::RunNotes& notes, Verbosity verbosity) {
   const auto warn = [&](std::uint64_t n, const std::string& what) {
-    if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
+    if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << counted(n, "time") << what << '\n';
   };
-  warn(notes.passes_through,
-       " times a person who had been held up walked through others; first in " + notes.first_pass);
-  warn(notes.seats_changed, " times a person took another seat because theirs stayed taken");
-  warn(notes.seats_missed, " times a person stayed without a seat because theirs stayed taken");
+  warn(notes.passes_through, " a person who had been held up walked through others; first in " + notes.first_pass);
+  warn(notes.seats_changed, " a person took another seat because theirs stayed taken");
+  warn(notes.seats_missed, " a person stayed without a seat because theirs stayed taken");
   warn(notes.waits_outside,
-       " times a person waited outside, unseen, since the seat they came for was taken; first in " + notes.first_wait);
+       " a person waited outside, unseen, since the seat they came for was taken; first in " + notes.first_wait);
   if (notes.failed.empty()) return;
   constexpr std::size_t most_told = 10;
-  std::string message = std::to_string(notes.failed.size()) + " runs failed and have no rows";
+  std::string message = counted(notes.failed.size(), "run") +
+                        (notes.failed.size() == 1 ? " failed and has no rows" : " failed and have no rows");
   for (std::size_t i = 0; i < std::min(notes.failed.size(), most_told); ++i) {
     message += "\n  " + describe(notes.failed[i]);
   }
@@ -108,7 +109,7 @@ void tell_what_is_written(const RunOptions& options, const TableOutput& rows, st
     return;
   }
   std::vector<WrittenFile> files;
-  if (is_resumable(options.rows)) files.push_back({options.rows.output, std::to_string(rows.rows()) + " rows"});
+  if (is_resumable(options.rows)) files.push_back({options.rows.output, counted(rows.rows(), "row")});
   for (const auto& file :
        {options.summary, options.report, options.zones, options.trace, options.occupants, options.casas})
     files.push_back({file});
@@ -131,7 +132,8 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
   const RunRange left = tables.missing_runs();
   std::string message = "stopped by " + cause;
   if (!is_resumable(options.rows)) return message;
-  message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
+  message += ", " + std::to_string(left.count()) + " of " + counted(model.n_runs(), "run") +
+             (left.count() == 1 ? " is left" : " are left");
   return message + "; --resume continues";
 }
 
@@ -247,7 +249,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   tell_what_is_written(options, rows, done, inputs.verbosity);
   tell(rows.notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
-    std::cerr << done << " runs, " << rows.rows() << " rows in " << progress.seconds() << " s\n";
+    std::cerr << counted(done, "run") << ", " << counted(rows.rows(), "row") << " in " << progress.seconds() << " s\n";
   }
 }
 

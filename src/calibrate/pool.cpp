@@ -131,8 +131,8 @@ std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double st
     pool.back().labelled.days.push_back(stretch_of(day, step_s));
   }
   if (pool.empty() && !days.empty()) {
-    throw Error(ErrorCode::input, "the log has " + std::to_string(n_sensors) +
-                                      " sensors, and no room of the recipe has as many (the first has " +
+    throw Error(ErrorCode::input, "the log has " + counted(static_cast<std::size_t>(n_sensors), "sensor") +
+                                      ", and no room of the recipe has as many (the first has " +
                                       std::to_string(days.front().sensors.size()) +
                                       "): change the recipe's sensors, or name those of the room in a map (--map)");
   }

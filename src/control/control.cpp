@@ -59,8 +59,9 @@ Columns columns_for(const LightSpec& light, const ColumnOwners& owners, Diagnost
   if (!light.door.empty()) columns.door = find(owners.doors, light.door, "door", light, faults);
   const std::size_t n = light.sensors.empty() ? owners.sensors.size() : light.sensors.size();
   if (light.together && static_cast<std::size_t>(light.together->sensors) > n) {
-    faults.error(light.where, "light '" + light.id + "': together: " + std::to_string(light.together->sensors) +
-                                  " sensors of " + std::to_string(n));
+    faults.error(light.where, "light '" + light.id + "': together: " +
+                                  counted(static_cast<std::size_t>(light.together->sensors), "sensor") + " of " +
+                                  std::to_string(n));
   }
   return columns;
 }

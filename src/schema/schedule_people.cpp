@@ -123,9 +123,9 @@ void check_meetings(const ScheduleSpec& schedule, std::size_t room, const SceneS
   const bool are_staff = meetings.attendees == Attendees::staff;
   const auto require = [&](int people, const Where& where) {
     if (people > static_cast<int>(seats.size())) {
-      diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people for the " +
-                                   std::to_string(seats.size()) + " seats of " + scene.name +
-                                   " that are left for meetings");
+      diagnostics.error(where, "schedule: meetings: " + counted(static_cast<std::size_t>(people), "person", "people") +
+                                   " for the " + counted(seats.size(), "seat") + " of " + scene.name + " that " +
+                                   (seats.size() == 1 ? "is" : "are") + " left for meetings");
     } else if (are_staff && people > number_of(schedule.staff)) {
       diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people, and " +
                                    std::to_string(number_of(schedule.staff)) + " of the staff");
@@ -159,7 +159,7 @@ std::vector<std::string> beds_of(const HouseholdSpec& household, const SceneSpec
       const auto free = std::ranges::find_if(names, [&](const std::string& name) { return !taken.contains(name); });
       if (free == names.end()) {
         diagnostics.error(resident.where, "household: '" + resident.id + "' has no bed: " + scene.name + " has " +
-                                              std::to_string(names.size()) + " places to lie and sleep");
+                                              counted(names.size(), "place") + " to lie and sleep");
       } else {
         bed = *free;
         taken.insert(bed);
@@ -237,7 +237,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
       const auto seat = desks.own(staff, static_cast<std::size_t>(i));
       if (!seat) {
         diagnostics.error(staff.where,
-                          "schedule: more staff than the " + std::to_string(desks.size()) + " seats of " + scene.name);
+                          "schedule: more staff than the " + counted(desks.size(), "seat") + " of " + scene.name);
         break;
       }
       add(SchedulePart::staff, staff.role,

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text.hpp"
 #include "pirsim/geometry.hpp"
 #include "schema/areas.hpp"
 #include "sim/actor.hpp"
@@ -327,10 +328,9 @@ void plan_occupancy(TrialModel& trial, const SceneSpec& scene, Diagnostics& faul
     const auto places = static_cast<std::size_t>(std::ranges::count(all.parts, part.part));
     if (part.most <= places) continue;
     faults.error(occupancy.counts.most.file.empty() ? occupancy.where : occupancy.counts.most,
-                 std::to_string(part.most) + " people, but " + parts.name(part.part, scene) + " holds " +
-                     std::to_string(places) + ": " + std::to_string(part.seats) +
-                     (part.seats == 1 ? " seat" : " seats") + " that can be used and " +
-                     std::to_string(places - part.seats) + " places to stand");
+                 counted(part.most, "person", "people") + ", but " + parts.name(part.part, scene) + " holds " +
+                     std::to_string(places) + ": " + counted(part.seats, "seat") + " that can be used and " +
+                     counted(places - part.seats, "place") + " to stand");
   }
 }
 

@@ -129,7 +129,8 @@ void print_occupancy(std::ostream& out, const OccupancySpec& occupancy, const si
     int changes = counts.people.front();
     for (std::size_t i = 1; i < counts.people.size(); ++i) changes += std::abs(counts.people[i] - counts.people[i - 1]);
     out << counted(counts.people.size(), "reading") << (file.empty() ? "" : " of " + file) << ", " << fewest << " to "
-        << most << " people, " << changes << " comings and goings";
+        << counted(static_cast<std::size_t>(most), "person", "people") << ", "
+        << counted(static_cast<std::size_t>(changes), "coming or going", "comings and goings");
     for (const AreaCountsSpec& area : counts.areas)
       out << "; " << area.area << " up to " << *std::ranges::max_element(area.people);
   } else {

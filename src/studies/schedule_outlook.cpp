@@ -140,7 +140,8 @@ void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::Compile
   for (std::size_t i = 0; i < std::min(most_told, outlook.meetings.size()); ++i) {
     const ExpectedMeeting& meeting = outlook.meetings[i];
     out << "    " << clock_text(meeting.day, meeting.begin_s).substr(0, 16) << '-' << clock(meeting.end_s) << ", "
-        << meeting.people << " people" << (meeting.area.empty() ? "" : " in " + meeting.area) << '\n';
+        << counted(static_cast<std::size_t>(meeting.people), "person", "people")
+        << (meeting.area.empty() ? "" : " in " + meeting.area) << '\n';
   }
   if (outlook.meetings.size() > most_told) out << "    and so on\n";
   if (outlook.mean_cleaning_s) out << "  cleaning about " << clock(*outlook.mean_cleaning_s) << " on working days\n";

@@ -1,3 +1,4 @@
+#include "core/text.hpp"
 #include "reconcile/data/units.hpp"
 #include "reconcile/report/pages.hpp"
 
@@ -268,7 +269,7 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   const std::size_t before = times_analysed(trail, measured.digest);
   if (!trail.empty()) trail += '\n';
   for (const TrailEvent& event : outcome.trail) trail += in_words(event) + '\n';
-  trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
+  trail += "these data were analysed " + counted(static_cast<std::size_t>(before), "time") + " before in this folder\n";
   io::write_text_file(folder / "trail.log", trail);
   const std::vector<std::string>& phases = script.summary.phases;
   const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};

@@ -76,7 +76,7 @@ TEST_CASE("What a room can't hold is refused with its place, and the nearest nam
   refused_in_room("  staff: [{count: 1}]\n  entrances: [dor]\n", 4,
                   "entrance 'dor' is not in room (did you mean 'door'?)");
   refused_in_room("  meetings: {most_people: 6}\n", 4, "6 people for the 4 seats of room");
-  refused_in_room("  staff: [{count: 3}]\n  meetings: {}\n", 4, "2 people for the 1 seats");
+  refused_in_room("  staff: [{count: 3}]\n  meetings: {}\n", 4, "2 people for the 1 seat of");
   refused_in_room("  meetings: {held: [{at: 10:00, people: 9}]}\n", 4, "9 people for the 4 seats");
 }
 
@@ -196,6 +196,7 @@ TEST_CASE("What can't be a household is refused with its place") {
   refused("  household: {residents: [{id: a}, {id: a}]}\n", "'a'");
   refused("  household: {residents: [{name: a}]}\n", "unknown key 'name'");
   refused("  household: {residents: [{id: a, occupation: work}]}\n", "did you mean 'works'?");
+  refused("  household: {residents: [{id: a, occupation: work_at_home}]}\n", "did you mean 'works_at_home'?");
   refused("  household: {residents: [{id: a, age_years: 3}]}\n", "age_years: expected");
   refused("  household: {residents: [{id: a}], goes_to_bed: {mean: 06:00}}\n", "goes_to_bed: is not after `wakes`");
   refused(std::string(couple) + "  cleaning: 19:00\n", "schedule: `household` goes without `staff`, `meetings`");

@@ -337,7 +337,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
   std::ifstream trail_file(folder.path() / "trail.log");
   const std::string trail{std::istreambuf_iterator<char>(trail_file), {}};
-  CHECK_THAT(trail, contains("analysed 0 times before") && contains("analysed 1 times before"));
+  CHECK_THAT(trail, contains("analysed 0 times before") && contains("analysed 1 time before"));
   const ScriptSpec patched_script = io::read_script(folder.path() / "script_patched.yaml");
   REQUIRE(patched_script.effects.size() == 1);
   CHECK(patched_script.effects[0].name == "false_triggers");
