@@ -119,9 +119,9 @@ class Light {
       return 0;
     }
     const std::optional<Cue> cue = cue_of(row, people);
-    if (!cue) {
+    if (!cue || people < 0) {
       ++day.unknown;
-      bridge(is_night(hour));
+      pass(cue, is_night(hour));
       return unknown_bit;
     }
     gap_rows_ = 0;
@@ -172,25 +172,26 @@ class Light {
     return is_night ? night_rows_ : delay_rows_[i];
   }
 
-  /// A row of which nothing is known: the light goes on as if nothing moved, and anew once that lasts longer than the
-  /// delay.
-  void bridge(bool is_night) {
-    ++gap_rows_;
+  /// A row that isn't counted. Where the sensors aren't known the light goes on as if nothing moved, and anew once that
+  /// lasts longer than the delay.
+  void pass(const std::optional<Cue>& cue, bool is_night) {
+    gap_rows_ = cue ? 0 : gap_rows_ + 1;
     for (std::size_t i = 0; i < switches_.size(); ++i) {
       const std::int64_t delay_rows = delay_of(i, is_night);
       if (gap_rows_ > delay_rows)
         switches_[i] = {};
       else
-        switches_[i].advance(rule_, {}, delay_rows);
+        switches_[i].advance(rule_, cue.value_or(Cue{}), delay_rows);
     }
     begin_people();
   }
 
   [[nodiscard]] std::int64_t rows_of(double seconds) const { return std::llround(seconds / window_s_); }
 
+  /// None where a sensor isn't known.
   std::optional<Cue> cue_of(const Sample& row, int people) {
     int n_moved = 0;
-    bool is_known = people >= 0;
+    bool is_known = true;
     for (std::size_t i = 0; i < columns_.sensors.size(); ++i) {
       const std::uint8_t bit = row.bits[columns_.sensors[i]];
       if (bit == 1) last_motion_[i] = row_;

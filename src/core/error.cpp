@@ -34,9 +34,9 @@ std::vector<Issue> of_severity(const std::vector<Issue>& issues, Severity severi
   return result;
 }
 
-/// Of what there is ("; there are S1, S2") the list is told with the first fault that ends in it.
+/// A list of near_or_all() is told with the first fault that ends in it.
 void leave_out_told_list(const std::vector<Issue>& issues, std::string& message) {
-  const std::size_t begin = message.rfind("; there are ");
+  const std::size_t begin = message.rfind(begin_of_list);
   if (begin == std::string::npos) return;
   const std::string list = message.substr(begin);
   if (std::ranges::any_of(issues, [&](const Issue& told) { return told.message.ends_with(list); }))

@@ -163,11 +163,11 @@ std::string markdown_code(std::string_view text) {
 
 std::string near_or_all(std::string_view name, const std::vector<std::string>& known) {
   constexpr std::size_t most = 20;  // assumed: of more, as of meshes, nobody reads the list (tried 10-50)
-  if (known.empty()) return "; there are none";
+  if (known.empty()) return std::string(begin_of_list) + "none";
   std::string text = did_you_mean(name, known);
   if (!text.empty()) return text;
   for (std::size_t i = 0; i < known.size() && i < most; ++i)
-    text += (i == 0 ? "; there are " : ", ") + shortened(known[i]);
+    text += std::string(i == 0 ? begin_of_list : ", ") + shortened(known[i]);
   if (known.size() > most) text += " and " + std::to_string(known.size() - most) + " more";
   return text;
 }

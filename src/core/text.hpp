@@ -37,6 +37,8 @@ enum class Lines { one, many };  ///< many: line breaks and tabs may be in it
 /// Markdown that shows the text as code, in backticks.
 [[nodiscard]] std::string markdown_code(std::string_view text);
 
+/// How a list of what there is begins.
+inline constexpr std::string_view begin_of_list = "; there are ";
 /// ` (did you mean 'X'?)`, or `; there are A, B` if none is near; of very many only the first; `; there are none`.
 [[nodiscard]] std::string near_or_all(std::string_view name, const std::vector<std::string>& known);
 

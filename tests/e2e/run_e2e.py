@@ -384,6 +384,18 @@ class Light(unittest.TestCase):
             self.assertEqual([row["people_" + light] for row in lit], [row["people_" + light] for row in given])
         self.assertIn("living_room", (self.folder / "light.html").read_text())
 
+    def test_a_rule_that_names_areas_alone_takes_the_sensors_that_watch_them(self):
+        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
+        rule = write(self.folder, "rule.yaml", "pirsim_control: 1\nlights: [{area: living_room}, {area: bedroom}]\n")
+        made_by = "--scene", DATA / "rooms" / "two_rooms.gltf"
+        by_all, by_own, plain = (
+            pirsim("control", self.folder / "rows.csv", *more, "-o", self.folder / "costs.csv").stderr + (self.folder / "costs.csv").read_text()
+            for more in (("--rule", rule), ("--rule", rule, *made_by), made_by))
+        self.assertEqual(by_own, plain)
+        self.assertNotIn("warning", by_own)
+        self.assertIn("rule.yaml:2:10: warning: light 'living_room': the sensors of all areas switch it", by_all)
+        self.assertNotEqual(by_all.split("light,delay_min")[1], plain.split("light,delay_min")[1])
+
     def test_seats_that_no_sensor_notices_are_told(self):
         study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf", "--script", DATA / "studies" / "two_rooms.yaml"

@@ -116,6 +116,15 @@ class OwnRoom(unittest.TestCase):
         self.assertEqual(rows, {path: path.stat().st_mtime_ns for path in rows})
         self.assertIn("hold_s: 3", (piped / "recipe.yaml").read_text())
 
+    def test_days_that_are_not_compared_are_told_before_the_work(self):
+        lines = self.log[0].read_text().splitlines(keepends=True)
+        late = self.write("late.csv", lines[0] + "".join(lines[len(lines) // 2:]))
+        made = self.folder / "late"
+        told = self.calibrate(made, log=[late])[1]
+        self.assertRegex(told, r"of the log are compared none of 1 day, .*no verdict(.|\n)*wrote .*datapackage.json")
+        numbers = json.loads((made / "calibration.json").read_text())
+        self.assertEqual((numbers["days"], numbers["partial_days"], numbers["verdict"]), (0, 1, "too-little-told"))
+
     def test_the_rows_of_a_log_are_counted_as_the_log_is(self):
         """Also of readings that come a little more slowly than the usual window, so that another counter's step is theirs."""
         start = datetime.datetime(2026, 3, 2, 8)
@@ -133,6 +142,8 @@ class OwnRoom(unittest.TestCase):
         out, page = self.folder / "counts.csv", self.folder / "counts.html"
         _, told = run("count", self.made / "counter.json", "--log", *self.labelled, "-o", out, "--report", page)
         counts = {row["time"]: row for row in table(out)}
+        self.assertRegex(told, r"Somebody is there for [0-9.]+ h; the number is told with 80 % or more for [0-9.]+ h of them")
+        self.assertIn('"low":', page.read_text())  # of the range drawn behind the counts
         errors = []
         for file in self.labelled:
             for row in table(file):

@@ -84,7 +84,7 @@ NamedFile find_beside(const fs::path& folder, const fs::path& file, DataKind kin
                       std::span<const fs::path> data_directories) {
   std::error_code fault;
   const fs::path beside = folder / file;
-  if (fs::exists(beside, fault)) return {beside, {}};
+  if (fs::exists(beside, fault) && !fs::is_directory(beside, fault)) return {beside, {}};
   const auto files = files_of(of(kind), data_folders(data_directories));
   const std::string bare = file.filename().string();
   const auto shipped = files.find(bare);

@@ -261,6 +261,7 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   CHECK(nights.whole.empty());
   CHECK(nights.n_partial == 2);
   CHECK(days.n_partial == 0);
+  CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, 1}), contains("no verdict"));
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, 0}) == "2 days, from 7:00 to 10:00");
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, 1}) ==
         "1 of 2 days, from 7:00 to 10:00; of the others it has less than nine tenths of these hours");

@@ -219,6 +219,19 @@ TEST_CASE("A light goes on through gaps of the rows: it is lit where a motion is
   CHECK(control.finish().lights.front().at(delay).switched_on_a_day == switched_on);
 }
 
+TEST_CASE("A light is switched in rows whose people nobody counted, and they aren't counted") {
+  Control control(rule_with({}, {3.0}), {{"PIR"}, {}, {}}, minute_s);
+  const std::string bits = "0100000", people = "--11111", lit = "2211100";  // -: not counted by anybody
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    const int n = people[i] == '-' ? -1 : 1;
+    CHECK(control.add(row_of(static_cast<int>(i), static_cast<std::uint8_t>(bits[i] - '0'), n)).lit[0] == lit[i] - '0');
+  }
+  const LightCosts costs = control.finish().lights.front();
+  CHECK(costs.unknown_h == Approx(2.0 / 60.0));
+  CHECK(costs.at(3.0).false_offs == 1);
+  CHECK(costs.at(3.0).dark_share.value == Approx(2.0 / 5.0));
+}
+
 TEST_CASE("A light of one of several areas that names no sensors is switched by all, and says so") {
   LightSpec kitchen;
   kitchen.area = "kitchen";
