@@ -338,7 +338,8 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         "In the tables: off on somebody, how often it went off while somebody was in its area, and the same an "
         "occupied "
         "hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five days doesn't "
-        "mean never. Dark: share of occupied time; longest, the longest such time. Empty: lit while nobody is there. "
+        "mean never: the range then ends at what so many hours can't exclude. Dark: share of occupied time; longest, "
+        "the longest such time. Empty: lit while nobody is there. "
         "Switched on: times a day. Wait: from coming into an empty area to light, on average; the delay hardly matters "
         "for it. First in, last out: lit from the day's first person to its last. Ideal: lit while somebody is there; "
         "less than that is dark time, and no saving.");
@@ -354,12 +355,6 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
-    const bool was_never = std::ranges::any_of(
-        light.by_delay, [](const DelayCosts& at) { return at.false_offs == 0 && at.false_offs_an_hour.over_days; });
-    if (was_never) {
-      section.paragraphs.push_back(
-          "Where it never went off on somebody, the range ends at what so many hours can't exclude.");
-    }
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
 
