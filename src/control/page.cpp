@@ -336,10 +336,9 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   if (know_people(costs)) {
     report.paragraphs.emplace_back(
         "In the tables: off on somebody, how often it went off while somebody was in its area, and the same an "
-        "occupied "
-        "hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five days doesn't "
-        "mean never: the range then ends at what so many hours can't exclude. Dark: share of occupied time; longest, "
-        "the longest such time. Empty: lit while nobody is there. "
+        "occupied hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five "
+        "days doesn't mean never: the range then reaches to what so many hours can't rule out. Dark: share of occupied "
+        "time; longest, the longest such time. Empty: lit while nobody is there. "
         "Switched on: times a day. Wait: from coming into an empty area to light, on average; the delay hardly matters "
         "for it. First in, last out: lit from the day's first person to its last. Ideal: lit while somebody is there; "
         "less than that is dark time, and no saving.");

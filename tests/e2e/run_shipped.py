@@ -136,6 +136,7 @@ class Shipped(unittest.TestCase):
         run = "run", "--scene", "meeting_room.gltf", "--summary", "sums.md", "--script"
         placements = "placements", "--scene", "nowhere.gltf", "--script"
         room = "room", "-o", "room.gltf"
+        (self.folder / "a_folder").mkdir()
         for args, text, name, place, fault, exit_code in (
                 (run, head + "summary:\n  reference: {}\n", "stefansson2021_table1.csv", "4:14", "summary: reference", 4),
                 (run, head + "occupancy: {{counts: {}}}\n", "stefansson2021_table1.csv", "3:21", "occupancy", 3),
@@ -145,6 +146,7 @@ class Shipped(unittest.TestCase):
                 (room, recipe + "{}]\n", "flat.gltf", "3:14", "scenes", 3)):
             file = self.folder / "named.yaml"
             for given, told in (("nowhere.x", f"there is no file '{self.folder}/nowhere.x'"),
+                                ("a_folder", f"there is no file '{self.folder}/a_folder'"),
                                 (f"../{name}", f"there is no file '{self.folder}/../{name}'; '{name}' without a folder "
                                                "is a shipped one"),
                                 (name.replace(".", "a.", 1), f"(did you mean '{name}'?)")):

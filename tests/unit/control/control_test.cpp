@@ -232,6 +232,25 @@ TEST_CASE("A light is switched in rows whose people nobody counted, and they are
   CHECK(costs.at(3.0).dark_share.value == Approx(2.0 / 5.0));
 }
 
+TEST_CASE("A light that a shut door keeps lit begins anew after a gap longer than its delay, people known or not") {
+  LightSpec latch;
+  latch.door = "door";
+  const auto lit_in = [&](const std::string& bits, const std::string& people) {
+    Control control(rule_with(latch, {1.0}), one_sensor, minute_s);
+    std::string result;
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      const int n = people[i] == '-' ? -1 : people[i] - '0';
+      const Sample row = row_of(static_cast<int>(i), static_cast<std::uint8_t>(bits[i] - '0'), n);
+      result += static_cast<char>('0' + control.add(row).lit[0]);
+    }
+    return result;
+  };
+  CHECK(lit_in("0112000", "1111111") == "0112111");
+  CHECK(lit_in("0112200", "1111111") == "0112200");
+  CHECK(lit_in("0110000", "111--11") == "0112211");     // the sensors are known: no gap
+  CHECK(lit_in("01120200", "111-1-11") == "01121211");  // two gaps of a row
+}
+
 TEST_CASE("A light of one of several areas that names no sensors is switched by all, and says so") {
   LightSpec kitchen;
   kitchen.area = "kitchen";
