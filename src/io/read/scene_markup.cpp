@@ -1,6 +1,7 @@
 #include "io/read/scene_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -112,7 +113,7 @@ class MarkupReader {
       if constexpr (std::same_as<Value, std::optional<std::string>>) {
         if (value_.contains(field.name)) value = name(field.name);
       }
-      if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range, unit_of(field.name));
+      if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range);
       if constexpr (Worded<Value>) value = word(field.name, value);
     });
     return spec;
@@ -180,7 +181,7 @@ class MarkupReader {
       error("", "surface without 'temperature_c' or 'as_meant'");
     if (!has_mesh()) error("", "a surface needs a mesh at its node");
     if (!value_.contains("temperature_c")) return {};
-    return {number("temperature_c", 0.0, accepted::surface_c, "degrees Celsius")};
+    return {number("temperature_c", 0.0, accepted::surface_c)};
   }
   mark::Ignore ignore() {
     only({"type"});
@@ -209,10 +210,12 @@ class MarkupReader {
 
   /// Of what the key ends in.
   static std::string unit_of(std::string_view key) {
-    return key.ends_with("_deg")     ? "degrees"
-           : key.ends_with("_s")     ? "seconds"
-           : key.ends_with("_share") ? "parts of 1"
-                                     : "metres";
+    return key.ends_with("_deg")     ? " of degrees"
+           : key.ends_with("_s")     ? " of seconds"
+           : key.ends_with("_share") ? " of parts of 1"
+           : key.ends_with("_c")     ? " of degrees Celsius"
+           : key.ends_with("_m")     ? " of metres"
+                                     : "";
   }
 
   template <Worded Enum>
@@ -229,12 +232,12 @@ class MarkupReader {
     return otherwise;
   }
 
-  double number(const char* key, double otherwise, const NumberRange& range, const std::string& unit = "metres") {
+  double number(const char* key, double otherwise, const NumberRange& range) {
     if (!value_.contains(key)) return otherwise;
     if (value_[key].is_number() && range.holds(value_[key].get<double>())) return value_[key].get<double>();
-    const auto told = [](double v) { return json(v).dump(); };
-    error(std::string("/") + key, std::string("'") + key + "' must be a number of " + unit + " from " +
-                                      told(range.min) + " to " + told(range.max));
+    const auto end = [](const char* word, double v) { return std::isfinite(v) ? word + json(v).dump() : ""; };
+    error(std::string("/") + key, std::string("'") + key + "' must be a number" + unit_of(key) +
+                                      end(" above ", range.above) + end(" from ", range.min) + end(" to ", range.max));
     return otherwise;
   }
 

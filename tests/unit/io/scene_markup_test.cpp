@@ -134,6 +134,20 @@ TEST_CASE("floors side by side are joined, floors that overlap, differ in height
   }
 }
 
+TEST_CASE("a number out of its range is told with the ends that there are, and its unit", "[scene]") {
+  const auto told = [](json mark) {
+    GltfBuilder scene;
+    scene.floor();
+    scene.node("a", GltfBuilder::marked(std::move(mark)));
+    return fault(scene);
+  };
+  json loud = sensor("PIR1");
+  loud["gain"] = 0;
+  CHECK_THAT(told(loud), contains("'gain' must be a number above 0.0 to 100.0"));
+  CHECK_THAT(told({{"type", "entrance"}, {"id", "door"}, {"width_m", 0.1}}),
+             contains("'width_m' must be a number of metres from 0.3 to 20.0"));
+}
+
 TEST_CASE("every fault of a scene is told, not only the first", "[scene]") {
   GltfBuilder scene;
   scene.floor();
