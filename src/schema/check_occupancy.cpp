@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <vector>
 
+#include "core/text.hpp"
 #include "schema/check_specs.hpp"
 #include "schema/clock.hpp"
 #include "schema/occupancy_runs.hpp"
@@ -63,7 +66,18 @@ void check_places(const PlacesSpec& places, const TellFault& tell) {
   if (places.stays.size() > limits::occupancy_rows)
     return tell("places", "more than " + std::to_string(limits::occupancy_rows) + " stays");
   const bool forward = std::ranges::all_of(places.stays, [](const StaySpec& stay) { return stay.from_s <= stay.to_s; });
-  if (!forward) tell("places", "a stay ends before it begins");
+  if (!forward) return tell("places", "a stay ends before it begins");
+  std::map<std::string, std::vector<const StaySpec*>> by_person;
+  for (const StaySpec& stay : places.stays) by_person[stay.person].push_back(&stay);
+  for (auto& [person, stays] : by_person) {
+    std::ranges::stable_sort(stays, {}, &StaySpec::from_s);
+    constexpr double rounding_s = 1e-6;
+    const auto overlap = std::ranges::adjacent_find(
+        stays, [](const auto* one, const auto* next) { return one->to_s > next->from_s + rounding_s; });
+    if (overlap == stays.end()) continue;
+    return tell("places", "'" + person + "' is in two places at once, from second " +
+                              shortest_number((*std::next(overlap))->from_s) + " on");
+  }
 }
 
 void check_positions(const PositionsSpec& positions, const TellFault& tell) {

@@ -57,7 +57,12 @@ class PlacesReader {
     if (!has_rows_) first_s_ = row.seconds;
     has_rows_ = true;
     last_s_ = row.seconds;
-    rows_[table_.text(row.row, *columns_.id)].push_back(row);
+    const std::string& person = table_.text(row.row, *columns_.id);
+    std::vector<Row>& own = rows_[person];
+    if (!own.empty() && own.back().seconds == row.seconds)
+      return repeated_.add("twice", where,
+                           "'" + person + "' has another row of this time: nobody is in two places at once");
+    own.push_back(row);
   }
 
   [[nodiscard]] const std::string& seat_of(const Row& row) const { return table_.text(row.row, *seat_); }

@@ -111,6 +111,19 @@ TEST_CASE("What is wrong with counts is told with its line and column") {
   refused("time,people\n1,0\n2,5000\n", "expected a number of people, 0 to 1000, got '5000'");
 }
 
+TEST_CASE("Nobody is in two places at once") {
+  refused("time_s,person,seat\n1,a,S1\n1,b,S2\n2,a,S1\n2,a,S3\n2,b,S2\n",
+          "c.csv:5:1: error: 'a' has another row of this time: nobody is in two places at once", "places: c.csv");
+  CHECK(occupancy_of("time_s,person,seat\n1,a,S1\n1,b,S1\n2,a,S1\n3,a,S2\n", "places: c.csv").places->stays.size() ==
+        3);
+  ScriptSpec script = script_of({});
+  PlacesSpec& places = script.trials.front().occupancy.emplace().places.emplace();
+  places.stays = {
+      {"a", "S1", 0.0, 60.0, {}, {}, {}}, {"b", "S2", 0.0, 60.0, {}, {}, {}}, {"a", "S2", 50.0, 90.0, {}, {}, {}}};
+  CHECK_THROWS_WITH(compile(shipped_scene("meeting_room.gltf"), script),
+                    contains("occupancy.places: 'a' is in two places at once, from second 50 on"));
+}
+
 TEST_CASE("What can't be in an occupancy is refused with its place") {
   const std::string hour = "time,people\n2026-03-02T07:00,0\n2026-03-02T08:00,2\n";
   refused(hour, "s.yaml:2:13: error: occupancy: unknown key 'count' (did you mean 'counts'?)", "count: c.csv");
