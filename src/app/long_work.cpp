@@ -96,7 +96,7 @@ std::string Progress::left() const {
     const double begun_s = made > 0 ? 0.0 : before_.simulated_s;
     if (made == 0) took = Clock::now() - before_.when;
     if (simulated_s_ > begun_s) times = (work_.simulated_s - simulated_s_) / (simulated_s_ - begun_s);
-  } else if (made > 0) {
+  } else if (made > 0 && done_ <= work_.total) {
     times = static_cast<double>(work_.total - done_) / static_cast<double>(made);
   }
   if (!times) return in_words(so_far) + " so far";
@@ -109,7 +109,9 @@ void Progress::tell() {
   if (const auto now = Clock::now(); now - last_.when >= apart) before_ = std::exchange(last_, {now, simulated_s_});
   std::string line = work_.what + ": ";
   if (work_.total > 1) {
-    line += std::to_string(done_) + " of " + std::to_string(work_.total) + ' ' + work_.unit + ", ";
+    // A search may try more than it was told to: then nobody knows how many more.
+    line += std::to_string(done_) + (done_ <= work_.total ? " of " + std::to_string(work_.total) : "") + ' ' +
+            work_.unit + ", ";
   }
   if (simulated_s_ > 0.0) {  // so that one part that takes long is followed on its way
     line += std::to_string(std::lround(simulated_s_));

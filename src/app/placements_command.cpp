@@ -23,7 +23,8 @@ struct PlacementsOptions {
 
 PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs, unsigned threads,
                         const StopRequest& stop) {
-  const auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
+  auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
+  if (spec.search && spec.by == PlacementAim::seats) n_tried += static_cast<std::uint64_t>(spec.search->n_sensors);
   // All places of a search by false-offs are done at once: how many sets are done says nothing of how long it takes.
   const std::uint64_t total = spec.by == PlacementAim::false_off ? 0 : spec.sets.size() + n_tried;
   Progress progress({"scoring sets of sensors", total, "sets"}, inputs.verbosity);
