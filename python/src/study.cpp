@@ -9,6 +9,7 @@
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "pirsim/position_doubts.hpp"
 #include "pirsim/response.hpp"
 #include "run_arrays.hpp"
 
@@ -29,6 +30,7 @@ nb::object warnings(const Model& model) {
   add(model.script().warnings);
   add(effects::idle(model.script().effects, model.scene(), model.script().sensing));
   add(idle_sensor_keys(model.scene(), model.script().sensing));
+  add(doubts_of_positions(model.scene(), model.script()));
   return to_python(all);
 }
 

@@ -13,6 +13,7 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/position_doubts.hpp"
 #include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
@@ -96,6 +97,7 @@ Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   const sim::CompiledStudy& study = model.compiled();
   tell(effects::idle(study.script_given().effects, study.scene(), study.sensing()), inputs.verbosity);
   tell(idle_sensor_keys(study.scene_given(), study.sensing()), inputs.verbosity);
+  tell(doubts_of_positions(study.scene_given(), study.script_given()), inputs.verbosity);
   return model;
 }
 
