@@ -15,7 +15,7 @@ namespace {
 
 struct CheckOptions {
   bool suggests = false;
-  std::optional<double> floor_m;
+  studies::SuggestionHints hints;
   std::filesystem::path output;  ///< empty: standard output
 };
 
@@ -35,7 +35,7 @@ void suggest(const Inputs& inputs, const CheckOptions& options) {
     const Progress progress({.what = "looking for floors and rooms in " + name}, inputs.verbosity);
     io::ModelParts model = io::read_model_parts(found(io::DataKind::rooms, inputs.scene));
     tell(model.warnings, inputs.verbosity);
-    return studies::to_yaml(studies::suggest(std::move(model), options.floor_m, name), name);
+    return studies::to_yaml(studies::suggest(std::move(model), options.hints, name), name);
   }();
   if (options.output.empty()) {
     std::cout << text;
@@ -47,8 +47,12 @@ void suggest(const Inputs& inputs, const CheckOptions& options) {
 
 void check(const Inputs& inputs, const CheckOptions& options) {
   if (options.suggests) return suggest(inputs, options);
-  if (options.floor_m || !options.output.empty())
-    throw Error(ErrorCode::usage, std::string(options.floor_m ? "--floor" : "-o") + " goes with --suggest");
+  if (options.hints.floor_m || !options.hints.ignored.empty() || !options.output.empty()) {
+    throw Error(ErrorCode::usage, std::string(options.hints.floor_m           ? "--floor"
+                                              : options.hints.ignored.empty() ? "-o"
+                                                                              : "--ignore") +
+                                      " goes with --suggest");
+  }
   // Warnings are what a check is made for: --quiet leaves out only the report.
   Inputs with_warnings = inputs;
   with_warnings.verbosity = Verbosity::normal;
@@ -78,8 +82,15 @@ void add_check_command(CLI::App& app) {
   offer_replicates(command, *inputs);
   command.add_flag("--suggest", options->suggests,
                    "propose a file of marks for the scene, to be edited; no script is needed");
-  command.add_option("--floor", options->floor_m, "of --suggest: the floor's height (default: the lowest large one's)")
+  command
+      .add_option("--floor", options->hints.floor_m,
+                  "of --suggest: the floor's height (default: the lowest large one's)")
       ->option_text("M");
+  command
+      .add_option("--ignore", options->hints.ignored,
+                  "of --suggest: a node to leave out with all below it, as `ignore` of marks; repeatable")
+      ->option_text("NODE")
+      ->allow_extra_args(false);
   offer_output(command, options->output, "FILE", "of --suggest: marks, .yaml (default: standard output)");
   on_call(
       command, inputs, [options](const Inputs& given) { check(given, *options); }, Needs::scene);

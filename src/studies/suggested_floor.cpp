@@ -129,6 +129,7 @@ class Planner {
       n_inside += is_outside_[i] == 0 ? 1 : 0;
     }
     if (n_inside > 0) return;
+    is_bare_ = true;
     const auto largest = std::ranges::max_element(measured_, {}, &Region::n_cells);
     if (largest != measured_.end()) is_outside_[static_cast<std::size_t>(largest - measured_.begin())] = 0;
   }
@@ -136,6 +137,7 @@ class Planner {
   FloorPlan plan() {
     FloorPlan plan;
     plan.height_m = height_m_;
+    plan.is_bare = is_bare_;
     plan.grid = grid_;
     std::map<int, int> rooms;
     plan.room_of_cell.assign(grid_.size(), -1);
@@ -283,6 +285,7 @@ class Planner {
   Regions regions_;
   std::vector<Region> measured_;  ///< (n_regions)
   Cells is_outside_;              ///< (n_regions)
+  bool is_bare_ = false;
 };
 
 }  // namespace

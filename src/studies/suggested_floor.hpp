@@ -32,6 +32,7 @@ struct FloorPlan {
   int n_rooms = 0;
   std::vector<FloorGap> gaps;
   bool is_open = false;      ///< the only way in is a side without walls
+  bool is_bare = false;      ///< nothing is inside of walls or below a ceiling, and the largest region is taken
   double standing_m2 = 0.0;  ///< of rooms, where one can stand upright
   double covered_m2 = 0.0;   ///< of it, below a ceiling
   [[nodiscard]] int room_at(const Vec2& place) const { return room_of_cell[grid.at(place)]; }

@@ -102,6 +102,7 @@ FloorMaps maps_of(Meshes meshes, double height_m, double side_m) {
 
 std::vector<double> level_heights_m(Meshes meshes) {
   constexpr double bin_m = 0.02, least_m2 = 1.0, least_part = 0.1;
+  constexpr double surely_m2 = 8.0;  // assumed (5-12): a room's floor, however large the ground around it is
   constexpr std::size_t most = 12;
   std::map<long, double> areas;  // by bin
   each_triangle(meshes, [&](const Corners& t) {
@@ -114,7 +115,8 @@ std::vector<double> level_heights_m(Meshes meshes) {
   for (const auto& [area, bin] : levels) {
     const double height_m = static_cast<double>(bin) * bin_m;
     const auto is_near = [&](double known) { return std::abs(known - height_m) <= 1.5 * same_floor_m; };
-    if (-area < std::max(least_m2, -least_part * levels.front().first) || heights.size() == most) break;
+    const double least = std::clamp(-least_part * levels.front().first, least_m2, surely_m2);
+    if (-area < least || heights.size() == most) break;
     if (std::ranges::none_of(heights, is_near)) heights.push_back(height_m);
   }
   std::ranges::sort(heights);

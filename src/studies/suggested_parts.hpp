@@ -24,6 +24,13 @@ struct Extent {
 /// Turns and scales the model.
 void to_room(io::ModelParts& model, const SuggestedFrame& frame);
 
+/// Nodes of the ground that the rooms stand on, of a sky around them, and the like: much larger than all the rest. By
+/// sizes alone, so that a room around a few things may be among them.
+[[nodiscard]] std::vector<int> surroundings_of(const io::ModelParts& model);
+void leave_out(io::ModelParts& model, const std::vector<int>& nodes);
+/// Leaves out what patterns of a marks file name, with all below. Throws Error(usage) for one that names nothing.
+void ignore(io::ModelParts& model, const std::vector<std::string>& patterns);
+
 /// A node with all parts below it.
 struct Thing {
   int node = 0;

@@ -75,34 +75,98 @@ std::vector<Thing> doors_of(const io::ModelParts& model) {
   return doors;
 }
 
-/// The lowest height with at least half as much room as the best, under a ceiling if there are any.
+/// The lowest height with at least half as much room as the best, under a ceiling if there are any, inside of walls if
+/// anything is.
 struct ChosenFloor {
   double height_m = 0.0;
   std::vector<double> others_m;
 };
 std::optional<ChosenFloor> choose_floor(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves) {
   constexpr double coarse_m = 0.1, least_m2 = 2.0, least_part = 0.5;
-  struct Floor {
-    double height_m, standing_m2, covered_m2;
-  };
-  std::vector<Floor> floors;
-  double most = 0.0, most_covered = 0.0;
+  std::vector<FloorPlan> floors;
   for (const double height_m : level_heights_m(meshes)) {
-    const FloorPlan plan = floor_plan_at(meshes, leaves, height_m, coarse_m);
-    if (plan.standing_m2 >= least_m2) floors.push_back({height_m, plan.standing_m2, plan.covered_m2});
-    most = std::max(most, plan.standing_m2);
-    most_covered = std::max(most_covered, plan.covered_m2);
+    FloorPlan plan = floor_plan_at(meshes, leaves, height_m, coarse_m);
+    if (plan.standing_m2 >= least_m2) floors.push_back(std::move(plan));
   }
+  if (std::ranges::any_of(floors, [](const FloorPlan& plan) { return !plan.is_bare; }))
+    std::erase_if(floors, [](const FloorPlan& plan) { return plan.is_bare; });
+  double most = 0.0, most_covered = 0.0;
+  for (const FloorPlan& plan : floors)
+    most = std::max(most, plan.standing_m2), most_covered = std::max(most_covered, plan.covered_m2);
   const bool has_ceilings = most_covered >= least_part * most;  // then what has none is a roof, or a garden
   ChosenFloor chosen;
   bool is_chosen = false;
-  for (const Floor& floor : floors) {
-    if (has_ceilings ? floor.covered_m2 < least_part * most_covered : floor.standing_m2 < least_part * most) continue;
-    (is_chosen ? chosen.others_m.emplace_back() : chosen.height_m) = floor.height_m;
+  for (const FloorPlan& plan : floors) {
+    if (has_ceilings ? plan.covered_m2 < least_part * most_covered : plan.standing_m2 < least_part * most) continue;
+    (is_chosen ? chosen.others_m.emplace_back() : chosen.height_m) = plan.height_m;
     is_chosen = true;
   }
   if (!is_chosen) return std::nullopt;
   return chosen;
+}
+
+/// A model in its frame, with its floor if one was found.
+struct Found {
+  io::ModelParts model;
+  SuggestedFrame frame;
+  std::vector<Thing> doors, spaces;
+  std::optional<ChosenFloor> floor;
+  FloorPlan plan{};
+};
+
+/// Walls and furniture that stand on the floor.
+std::size_t n_standing(const Found& found) {
+  constexpr double near_m = 0.05, least_height_m = 0.3;
+  return static_cast<std::size_t>(std::ranges::count_if(found.model.parts, [&](const io::ModelPart& part) {
+    const TriMesh* mesh = &part.mesh;
+    const Extent extent = extent_of({&mesh, 1});
+    return std::abs(extent.least.y - found.plan.height_m) <= near_m && extent.size().y >= least_height_m;
+  }));
+}
+
+Found look_for_floor(io::ModelParts model, std::optional<double> floor_m) {
+  Found found{std::move(model), {}, {}, {}, {}, {}};
+  found.frame = frame_of(found.model);
+  to_room(found.model, found.frame);
+  found.doors = doors_of(found.model);
+  found.spaces = things_named(found.model, space_words, [](const Extent&) { return true; });
+  std::vector<Leaf> leaves;
+  for (const Thing& door : found.doors) leaves.push_back(leaf_of(door));
+  const std::vector<const TriMesh*> meshes = meshes_without(found.model, found.spaces);
+  found.floor = floor_m ? ChosenFloor{*floor_m, {}} : choose_floor(meshes, leaves);
+  constexpr double fine_m = 0.05;
+  if (found.floor) found.plan = floor_plan_at(meshes, leaves, found.floor->height_m, fine_m);
+  return found;
+}
+
+/// Is a floor that was found without the surroundings the better one? They may have been the room.
+bool is_better(const Found& without, const Found& with) {
+  if (without.plan.n_rooms == 0 || with.plan.n_rooms == 0) return without.plan.n_rooms > 0;
+  if (without.plan.is_bare != with.plan.is_bare) return with.plan.is_bare;
+  const std::size_t own = n_standing(without), other = n_standing(with);
+  return own > other || (own == other && !without.plan.is_bare);
+}
+
+/// Why there is none, and what may be in the way.
+std::string no_floor(const Found& found, std::optional<double> floor_m) {
+  const std::string what = floor_m ? "at a height of " + fixed(*floor_m, 2) + " m nothing looks like a floor"
+                                   : "nothing in the model looks like a floor";
+  const io::ModelPart* largest = nullptr;
+  double most_m2 = 0.0;
+  for (const io::ModelPart& part : found.model.parts) {
+    const TriMesh* mesh = &part.mesh;
+    const Vec3 size = extent_of({&mesh, 1}).size();
+    if (size.x * size.z <= most_m2) continue;
+    most_m2 = size.x * size.z;
+    largest = &part;
+  }
+  const std::string name =
+      largest == nullptr ? "" : shortened(found.model.nodes[static_cast<std::size_t>(largest->node)].name);
+  return what + ": level, with 2 m2 at least to stand on" +
+         (largest == nullptr ? ""
+                             : ". The widest thing is '" + name + "', " + fixed(most_m2, 0) +
+                                   " m2 seen from above: if it is in the way, leave it out (--ignore '" + name + "')") +
+         (floor_m ? "" : ", or tell the floor's height (--floor)");
 }
 
 /// A name that an id can be.
@@ -163,38 +227,37 @@ void add_areas(const io::ModelParts& model, const std::vector<Thing>& spaces, co
 
 }  // namespace
 
-Suggestion suggest(io::ModelParts model, std::optional<double> floor_m, const std::string& name) {
-  Suggestion result;
+Suggestion suggest(io::ModelParts model, const SuggestionHints& hints, const std::string& name) {
+  ignore(model, hints.ignored);
   if (model.parts.empty()) throw Error(ErrorCode::input, {name}, "the model has no meshes");
-  result.frame = frame_of(model);
-  to_room(model, result.frame);
-  const std::vector<Thing> doors = doors_of(model);
-  std::vector<Leaf> leaves;
-  for (const Thing& door : doors) leaves.push_back(leaf_of(door));
-  const std::vector<Thing> spaces = things_named(model, space_words, [](const Extent&) { return true; });
-  const std::vector<const TriMesh*> meshes = meshes_without(model, spaces);
-  const std::optional<ChosenFloor> floor = floor_m ? ChosenFloor{*floor_m, {}} : choose_floor(meshes, leaves);
-  if (!floor)
-    throw Error(ErrorCode::input, {name}, "nothing in the model looks like a floor: level, with room to stand");
-  constexpr double fine_m = 0.05;
-  const FloorPlan plan = floor_plan_at(meshes, leaves, floor->height_m, fine_m);
-  if (plan.n_rooms == 0) {
-    throw Error(ErrorCode::input, {name},
-                "at a height of " + fixed(floor->height_m, 2) + " m nothing looks like a floor");
+  Suggestion result;
+  result.ignored = hints.ignored;
+  const std::vector<int> around = surroundings_of(model);
+  Found found = look_for_floor(model, hints.floor_m);
+  if (!around.empty()) {
+    io::ModelParts rest = model;
+    leave_out(rest, around);
+    if (Found without = look_for_floor(std::move(rest), hints.floor_m); is_better(without, found)) {
+      found = std::move(without);
+      for (const int node : around) result.around.push_back(model.nodes[static_cast<std::size_t>(node)].name);
+    }
   }
-  result.floor_m = floor->height_m;
-  result.other_floors_m = floor->others_m;
+  if (found.plan.n_rooms == 0) throw Error(ErrorCode::input, {name}, no_floor(found, hints.floor_m));
+  const FloorPlan& plan = found.plan;
+  result.frame = found.frame;
+  result.floor_m = found.floor->height_m;
+  result.other_floors_m = found.floor->others_m;
   result.floors = floor_outlines(plan);
   result.is_open = plan.is_open;
   std::vector<Thing> shutting;
   for (const FloorGap& gap : plan.gaps) {
-    if (gap.leaf >= 0) shutting.push_back(doors[static_cast<std::size_t>(gap.leaf)]);
+    if (gap.leaf >= 0) shutting.push_back(found.doors[static_cast<std::size_t>(gap.leaf)]);
   }
-  result.door_leaves = names_of(model, shutting);
-  result.spaces = names_of(model, spaces);
-  add_areas(model, spaces, plan, result);
-  result.seats = seats_of(model, plan);
-  result.beds = beds_of(model, plan);
+  result.door_leaves = names_of(found.model, shutting);
+  result.spaces = names_of(found.model, found.spaces);
+  add_areas(found.model, found.spaces, plan, result);
+  result.seats = seats_of(found.model, plan);
+  result.beds = beds_of(found.model, plan);
   return result;
 }
 

@@ -47,13 +47,20 @@ struct Suggestion {
   std::vector<SuggestedSeat> seats;
   std::vector<std::string> door_leaves;  ///< nodes that shut openings
   std::vector<std::string> spaces;       ///< nodes that are rooms' volumes
+  std::vector<std::string> around;       ///< nodes of the ground and the sky
+  std::vector<std::string> ignored;      ///< patterns, as given
   std::vector<std::string> beds;         ///< nodes
   bool is_open = false;                  ///< no way in was found, and a side without walls is taken for one
 };
 
-/// floor_m: its height after the frame; none: the lowest of the large ones. Throws Error(input) if nothing looks like
-/// a floor.
-[[nodiscard]] Suggestion suggest(io::ModelParts model, std::optional<double> floor_m, const std::string& name);
+/// What the user knows better.
+struct SuggestionHints {
+  std::optional<double> floor_m{};     ///< its height after the frame; none: the lowest of the large ones
+  std::vector<std::string> ignored{};  ///< patterns of nodes, as of a marks file
+};
+
+/// Throws Error(input) if nothing looks like a floor, Error(usage) for a pattern that no node has.
+[[nodiscard]] Suggestion suggest(io::ModelParts model, const SuggestionHints& hints, const std::string& name);
 
 /// A marks file with what is in doubt in comments.
 [[nodiscard]] std::string to_yaml(const Suggestion& suggestion, const std::string& model_name);

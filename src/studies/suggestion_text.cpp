@@ -119,8 +119,11 @@ class SuggestionWriter {
   }
 
   void ignored() {
-    if (given_.door_leaves.empty() && given_.spaces.empty()) return;
+    if (given_.door_leaves.empty() && given_.spaces.empty() && given_.around.empty() && given_.ignored.empty()) return;
     out_ << "\nignore:\n";
+    for (const std::string& pattern : given_.ignored) out_ << "- " << quoted(pattern) << "\n";
+    for (const std::string& name : given_.around)
+      out_ << "- " << quoted(name) << "  # lies around all else: no floor was looked for on it\n";
     for (const std::string& name : given_.door_leaves) out_ << "- " << quoted(name) << "  # shuts an opening\n";
     for (const std::string& name : given_.spaces) out_ << "- " << quoted(name) << "  # a room's volume\n";
   }

@@ -192,9 +192,107 @@ TEST_CASE("volumes of spaces name areas and are ignored, and the upper of two st
   CHECK(lower.floor_m == Approx(0.0).margin(0.01));
   REQUIRE(lower.other_floors_m.size() == 1);
   CHECK(lower.other_floors_m[0] == Approx(2.7).margin(0.02));
-  const studies::Suggestion upper = studies::suggest(two.model, 2.7, "house");
+  const studies::Suggestion upper = studies::suggest(two.model, {2.7, {}}, "house");
   CHECK(upper.floor_m == 2.7);
   CHECK(upper.areas.size() == 3);
+}
+
+TEST_CASE("the floor of a model is that of its rooms, whatever ground it stands on and sky it stands under",
+          "[suggestion]") {
+  ModelBuilder plain = flat();
+  furnish(plain);
+  const studies::Suggestion expected = studies::suggest(plain.model, {}, "flat");
+  const auto check = [&](const ModelBuilder& b, const std::vector<std::string>& around) {
+    const studies::Suggestion found = studies::suggest(b.model, {}, "flat");
+    CHECK(found.frame.unit == "m");
+    CHECK(found.frame.up == 'y');
+    CHECK(found.floor_m == Approx(0.0).margin(0.01));
+    CHECK(found.around == around);
+    CHECK(found.seats.size() == expected.seats.size());
+    REQUIRE(found.areas.size() == expected.areas.size());
+    for (std::size_t i = 0; i < found.areas.size(); ++i)
+      CHECK(found.areas[i].square_metres == Approx(expected.areas[i].square_metres).epsilon(0.1));
+    REQUIRE(found.entrances.size() == 1);
+    CHECK(is_near(found.entrances[0].at, expected.entrances[0].at, 0.15));
+  };
+  const bool has_ceiling = GENERATE(true, false);
+  if (!has_ceiling) std::erase_if(plain.model.parts, [](const io::ModelPart& part) { return part.node == 1; });
+  for (const double side : {16.0, 20.0, 40.0, 100.0}) {
+    for (const double below : {0.02, 0.15, 0.5, 1.0}) {
+      INFO(side << " m, " << below << " m below, ceiling " << has_ceiling);
+      ModelBuilder b = plain;
+      b.add("Ground", {4 - side / 2, -below - 0.001, 3 - side / 2}, {4 + side / 2, -below, 3 + side / 2});
+      check(b, {"Ground"});
+    }
+  }
+  for (const double radius : {30.0, 500.0}) {
+    INFO("sky of " << radius << " m");
+    ModelBuilder b = plain;
+    b.add("Ground", {-26, -0.151, -27}, {34, -0.15, 33});
+    TriMesh sky;
+    constexpr int around = 24, up = 12;
+    for (int i = 0; i <= up; ++i) {
+      for (int k = 0; k < around; ++k) {
+        const double height = 3.14159265 * i / up, turn = 2.0 * 3.14159265 * k / around;
+        sky.positions.emplace_back(4 + radius * std::sin(height) * std::cos(turn), radius * std::cos(height),
+                                   3 + radius * std::sin(height) * std::sin(turn));
+      }
+    }
+    for (std::uint32_t i = 0; i < up; ++i) {
+      for (std::uint32_t k = 0; k < around; ++k) {
+        const std::uint32_t next = (k + 1) % around;
+        sky.triangles.push_back({i * around + k, (i + 1) * around + k, i * around + next});
+        sky.triangles.push_back({i * around + next, (i + 1) * around + k, (i + 1) * around + next});
+      }
+    }
+    b.model.nodes.push_back({"Sky", -1});
+    b.model.parts.push_back({static_cast<int>(b.model.nodes.size()) - 1, sky});
+    check(b, {"Sky", "Ground"});
+  }
+}
+
+TEST_CASE("a garden full of things on the ground is no room, and a hall around a few things is no sky",
+          "[suggestion]") {
+  ModelBuilder b = flat();
+  furnish(b);
+  b.add("Ground", {-40, -0.151, -40}, {40, -0.15, 40});
+  for (int i = 0; i < 60; ++i) {
+    const double x = -38.0 + 8.0 * (i % 10), z = i < 30 ? -38.0 + 8.0 * (i / 10) : 14.0 + 8.0 * (i / 10 - 3);
+    b.add("Tree", {x, -0.15, z}, {x + 0.4, 4.0, z + 0.4});
+  }
+  const studies::Suggestion found = studies::suggest(b.model, {}, "garden");
+  CHECK(found.floor_m == Approx(0.0).margin(0.01));
+  CHECK(found.areas.size() == 3);
+
+  ModelBuilder hall;
+  TriMesh shell = box({0, 0, 0}, {12, 4, 10});
+  hall.model.nodes.push_back({"Hall", -1});
+  hall.model.parts.push_back({0, shell});
+  hall.add("Carpet", {4, 0.0, 4}, {7, 0.01, 6});
+  hall.add("Chair", {4.5, 0, 4.5}, {5, 0.45, 5});
+  hall.add("Desk", {5.2, 0, 4.5}, {6.6, 0.74, 5.3});
+  const studies::Suggestion inside = studies::suggest(hall.model, {}, "hall");
+  CHECK(inside.around.empty());
+  REQUIRE(inside.areas.size() == 1);
+  CHECK(inside.areas[0].square_metres > 100.0);
+}
+
+TEST_CASE("what is in the way of a floor is named, and can be left out", "[suggestion]") {
+  ModelBuilder b;
+  b.add("post", {0, 0, 0}, {0.1, 3, 0.1});
+  b.add("Cliff/rock", {-5, -1, -5}, {5, 6, 5}, -1);
+  b.model.parts.back().mesh.triangles.resize(4);  // no level part of it
+  CHECK_THROWS_WITH(studies::suggest(b.model, {}, "rocks"), contains("'Cliff/rock', 100 m2") && contains("--floor"));
+  ModelBuilder clean = flat();
+  ModelBuilder covered = clean;
+  covered.add("Plinth", {1, 0.1, 1}, {4, 0.9, 5});
+  const auto area = [](const ModelBuilder& model, const std::vector<std::string>& ignored) {
+    return studies::suggest(model.model, {0.0, ignored}, "flat").floors.size();
+  };
+  CHECK(area(covered, {"Plin*"}) == area(clean, {}));
+  const studies::Suggestion found = studies::suggest(covered.model, {{}, {"Plin*"}}, "flat");
+  CHECK_THAT(studies::to_yaml(found, "flat"), contains("ignore:\n- 'Plin*'"));
+  CHECK_THROWS_WITH(studies::suggest(covered.model, {{}, {"Plinht"}}, "flat"), contains("did you mean 'Plinth'"));
 }
 
 TEST_CASE("a model without a floor is refused", "[suggestion]") {
