@@ -113,8 +113,8 @@ class Pool {
 
 /// What is compared of a log.
 struct LogDays {
-  std::vector<counting::Stretch> whole;  ///< the hours of each day that has nine tenths of them at least
-  std::size_t n_partial = 0;             ///< days with fewer of them, which aren't compared
+  std::vector<counting::Stretch> whole;  ///< the hours of each day of which nine tenths are known of every sensor
+  std::vector<std::string> partial;      ///< dates of those of which less is known, which aren't compared
 };
 /// Of a log without times of day all of it, as one.
 [[nodiscard]] LogDays days_of(const LogRows& rows, const Interval& hours);
@@ -126,12 +126,12 @@ struct LogDays {
 struct About {
   std::string recipe, log, made_by;
   Interval hours;
-  std::size_t n_days = 0;     ///< of the log, that were compared
-  std::size_t n_partial = 0;  ///< days that weren't, as LogDays
-  std::size_t n_counted = 0;  ///< its readings with counts
+  std::size_t n_days = 0;            ///< of the log, that were compared
+  std::vector<std::string> partial;  ///< days that weren't, as LogDays
+  std::size_t n_counted = 0;         ///< its readings with counts
 };
 
-/// "1 day", or which of several are compared: of those with fewer than nine tenths of the hours nothing is.
+/// "1 day", or how many of several are compared, and which aren't.
 [[nodiscard]] std::string days_compared(const About& about);
 
 /// weights.csv, counter.json, calibration.json and calibration.html. Throws Error(io).
@@ -147,14 +147,26 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
 
 // A log counted.
 
+/// What a counter remembers of the log that it comes from, and expects of those that it counts.
+struct LogTraits {
+  double interval_s = 0.0;                       ///< between readings; 0: events, or not told
+  std::vector<std::string> sensors{};            ///< empty: not told
+  std::vector<std::optional<double>> holds_s{};  ///< (sensors) none: the log doesn't tell; empty: of no sensor
+};
+[[nodiscard]] LogTraits traits_of(const Log& log);
+void remember(const LogTraits& log, counting::Counter& counter);
+
 struct LogCounts {
   LogRows rows;  ///< windows of the counter's step
   counting::Estimates estimates;
   std::optional<Interval> expected_error;
-  std::string warning{};  ///< the counter's
+  std::string warning{};               ///< the counter's
+  std::vector<std::string> remarks{};  ///< what about this log the counter may not be made for
 };
-/// Throws Error(input) if the log hasn't as many sensors as the counter is for.
-[[nodiscard]] LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass);
+/// Throws Error(input) for a log that the counter isn't for: another number of sensors, others, or readings further
+/// apart than its step.
+[[nodiscard]] LogCounts count_log(const counting::Counter& counter, LogRows rows, const LogTraits& log,
+                                  counting::Pass pass);
 
 /// Mean absolute error, people.
 struct CountError {
@@ -165,10 +177,11 @@ struct CountError {
 [[nodiscard]] std::optional<CountError> error_of(const LogCounts& counts);
 /// "wrong by 0.21 people on average, over 194 readings; by 0.44 over the 90 with somebody"
 [[nodiscard]] std::string in_words(const CountError& error);
-/// For how much of the time with somebody the number is told for sure, in a sentence; nothing if nobody is.
+/// For how much of the time with somebody the number is told for sure, and for how much nobody knows, in a sentence or
+/// two; nothing if nobody is there and all is known.
 [[nodiscard]] std::string how_sure(const LogCounts& counts);
 
-/// CSV: time of a reading's end, people, their mean, and the probability of each count.
+/// CSV: time of a reading's end, people, their mean, and the probability of each count; empty where nobody knows.
 void write_counts(std::ostream& out, const LogCounts& counts);
 /// Throws Error(io).
 void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,

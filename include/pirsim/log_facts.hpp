@@ -36,6 +36,8 @@ struct LogSensorFacts {
   double known_s = 0.0, unknown_s = 0.0;
   double motion_s = 0.0;
   LogLengths pulses;  ///< of motion
+  /// For which it holds motion, in tenths of a second: of events, where many pulses are as short as the shortest.
+  std::optional<double> hold_s;
   LogLengths pauses;
   std::array<std::optional<double>, 24> motion_by_hour{};  ///< share of the known time, by local hour of the day
   std::optional<LogFalseTriggers> false_triggers;

@@ -113,14 +113,22 @@ LogRows readings_of(const Bits& bits, const std::optional<People>& people, std::
   return rows;
 }
 
-nb::object estimate(const Counter& counter, const LogRows& readings, bool smoothed) {
-  counting::Estimates estimates;
+/// Probabilities, and what the counter may not be made for.
+nb::tuple estimate(const Counter& counter, const LogRows& readings, const calibrate::LogTraits& log, bool smoothed) {
+  calibrate::LogCounts counts;
   attend(nb::none(), [&](Job&) {
-    estimates = calibrate::count_log(counter, readings, smoothed ? counting::Pass::smoothed : counting::Pass::forward)
-                    .estimates;
+    counts =
+        calibrate::count_log(counter, readings, log, smoothed ? counting::Pass::smoothed : counting::Pass::forward);
   });
-  return to_numpy(std::move(estimates.probabilities),
-                  {readings.n_windows(), static_cast<std::size_t>(counter.n_counts)});
+  return nb::make_tuple(to_numpy(std::move(counts.estimates.probabilities),
+                                 {readings.n_windows(), static_cast<std::size_t>(counter.n_counts)}),
+                        counts.remarks);
+}
+
+/// (readings) 1: a counter that looks back tells a number.
+nb::object told_readings(const Bits& motion, double step_s) {
+  const std::vector<char> told = counting::told_readings(stretch_of(motion), step_s, counting::Pass::forward);
+  return to_numpy(std::vector<std::uint8_t>(told.begin(), told.end()), {told.size()});
 }
 
 std::string counts_csv(const LogRows& readings, const Probabilities& probabilities) {
@@ -188,7 +196,8 @@ nb::dict told(calibrate::Calibration&& made) {
   return result;
 }
 
-nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings& settings, unsigned threads) {
+nb::dict calibrated(const std::string& pool, const LogRows& log, const calibrate::LogTraits& traits,
+                    const Settings& settings, unsigned threads) {
   calibrate::Calibration made;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
@@ -196,6 +205,7 @@ nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings&
     auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
     made = calibrate::Pool(std::move(rooms), settings, threads)
                .calibrate(std::vector{calibrate::whole_log(log)}, calibrate::days_of(log, hours).whole);
+    calibrate::remember(traits, made.counter);
   });
   return told(std::move(made));
 }
@@ -215,6 +225,8 @@ void add_counters(nb::module_& module) {
       .def_prop_ro("modes", [](const Counter& counter) { return counter.settings.modes; })
       .def_ro("n_sensors", &Counter::n_sensors)
       .def_ro("n_counts", &Counter::n_counts)
+      .def_ro("sensors", &Counter::sensors)
+      .def_ro("holds_s", &Counter::holds_s)
       .def_prop_ro("expected_error", [](const Counter& counter) { return pair_of(counter.expected_error); })
       .def_prop_ro("rooms", &numbers_of)
       .def_prop_ro("weights", &weights_of)
@@ -236,8 +248,18 @@ void add_counters(nb::module_& module) {
           nb::arg("bits"));
   module.def("train_counter", &train, nb::arg("days"), nb::arg("settings"), nb::arg("threads"), "A Counter.");
   module.def(
-      "read_counter", [](const std::string& file) { return counting::read_counter(file); }, nb::arg("file"),
-      "A Counter.");
+      "read_counter_bytes",
+      [](const std::string& file) {
+        const std::string bytes = counting::read_counter_bytes(file);
+        return nb::bytes(bytes.data(), bytes.size());
+      },
+      nb::arg("file"), "Of a file that isn't larger than a counter's may be.");
+  module.def(
+      "parse_counter",
+      [](const nb::bytes& bytes, const std::string& name) {
+        return counting::parse_counter({bytes.c_str(), bytes.size()}, name);
+      },
+      nb::arg("bytes"), nb::arg("name"), "A Counter.");
 }
 
 }  // namespace
@@ -245,15 +267,24 @@ void add_counters(nb::module_& module) {
 void add_counting(nb::module_& module) {
   add_counters(module);
   nb::class_<LogRows>(module, "Readings", "A log in readings of one length.");
+  nb::class_<calibrate::LogTraits>(module, "LogTraits", "What a counter remembers of a log.")
+      .def(
+          "__init__",
+          [](calibrate::LogTraits* self, double interval_s, std::vector<std::string> sensors,
+             std::vector<std::optional<double>> holds_s) {
+            new (self) calibrate::LogTraits{interval_s, std::move(sensors), std::move(holds_s)};
+          },
+          nb::arg("interval_s"), nb::arg("sensors"), nb::arg("holds_s"));
   module.def("readings", &readings_of, nb::arg("bits"), nb::arg("people").none(), nb::arg("sensors"), nb::arg("step_s"),
              nb::arg("end_us"), nb::arg("has_clock"), "Readings of arrays.");
-  module.def("estimate", &estimate, nb::arg("counter"), nb::arg("readings"), nb::arg("smoothed"),
-             "Probabilities of counts, an array.");
+  module.def("estimate", &estimate, nb::arg("counter"), nb::arg("readings"), nb::arg("log"), nb::arg("smoothed"),
+             "Probabilities of counts, an array, and remarks.");
+  module.def("told_readings", &told_readings, nb::arg("motion"), nb::arg("step_s"), "0 or 1, an array.");
   module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"), "As pirsim count writes them.");
   module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("threads"),
              "Days of a dataset, as tuples.");
-  module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("settings"), nb::arg("threads"),
-             "Parts of pirsim.counting.Calibration, by name.");
+  module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("traits"), nb::arg("settings"),
+             nb::arg("threads"), "Parts of pirsim.counting.Calibration, by name.");
 }
 
 }  // namespace pirsim::python

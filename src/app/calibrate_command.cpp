@@ -98,9 +98,9 @@ void run(const CalibrateOptions& options) {
                                "pirsim " + version() + " (" + git_revision() + ")",
                                hours,
                                days.whole.size(),
-                               days.n_partial,
+                               days.partial,
                                counted_readings(rows)};
-  if (days.n_partial > 0 && options.pool->inputs.verbosity != Verbosity::quiet)
+  if (!days.partial.empty() && options.pool->inputs.verbosity != Verbosity::quiet)
     std::cerr << "of the log are compared " << calibrate::days_compared(about) << '\n';
   require_rooms(recipe, static_cast<int>(rows.sensors.size()));
   DatasetWork pool = *options.pool;
@@ -112,8 +112,11 @@ void run(const CalibrateOptions& options) {
   auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
   counting::Settings settings;
   settings.step_s = step_s;
-  const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
-                                          .calibrate(std::vector{calibrate::whole_log(rows)}, days.whole);
+  calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
+                                    .calibrate(std::vector{calibrate::whole_log(rows)}, days.whole);
+  calibrate::LogTraits traits = calibrate::traits_of(log);
+  if (options.hold_s) std::ranges::fill(traits.holds_s, options.hold_s);
+  calibrate::remember(traits, made.counter);
   calibrate::write_calibration(options.folder, made, about);
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);

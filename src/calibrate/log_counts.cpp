@@ -7,6 +7,7 @@
 #include "io/pages/report.hpp"
 #include "pirsim/calibrate.hpp"
 #include "pirsim/csv.hpp"
+#include "pirsim/log_facts.hpp"
 
 namespace pirsim::calibrate {
 namespace {
@@ -40,22 +41,15 @@ std::vector<Day> days_of(const LogRows& rows) {
   return days;
 }
 
-/// Stretches of ten minutes or more in which nothing is known.
-std::vector<io::SeriesChart::Phase> unknown_phases(const LogRows& rows, const Day& day) {
-  constexpr double shortest_s = 600.0;
-  const auto is_unknown = [&](std::size_t i) {
-    for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
-      if (rows.at(i, k) != counting::unknown_bit) return false;
-    }
-    return true;
-  };
+/// Stretches in which nobody knows the number.
+std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const Day& day) {
   std::vector<io::SeriesChart::Phase> phases;
   for (std::size_t i = day.begin; i < day.end;) {
     std::size_t end = i;
-    while (end < day.end && is_unknown(end)) ++end;
-    if (static_cast<double>(end - i) * rows.window_s >= shortest_s) {
-      phases.push_back({"unknown", static_cast<double>(i - day.begin) * rows.window_s,
-                        static_cast<double>(end - day.begin) * rows.window_s});
+    while (end < day.end && !counts.estimates.is_told(end)) ++end;
+    if (end > i) {
+      phases.push_back({"unknown", static_cast<double>(i - day.begin) * counts.rows.window_s,
+                        static_cast<double>(end - day.begin) * counts.rows.window_s});
     }
     i = std::max(end, i + 1);
   }
@@ -81,13 +75,12 @@ io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
     }
     chart.rows.push_back(std::move(row));
   }
-  chart.phases = unknown_phases(rows, day);
+  chart.phases = unknown_phases(counts, day);
   for (std::size_t i = day.begin; i < day.end; ++i) {
-    const io::SeriesChart::Count now{static_cast<double>(i - day.begin) * rows.window_s, counts.estimates.count(i),
-                                     likely(counts, i)};
-    const bool is_same = !chart.people.empty() && chart.people.back().people == now.people &&
-                         chart.people.back().likely->low == now.likely->low &&
-                         chart.people.back().likely->high == now.likely->high;
+    io::SeriesChart::Count now{static_cast<double>(i - day.begin) * rows.window_s};
+    if (counts.estimates.is_told(i)) now.people = counts.estimates.count(i), now.likely = likely(counts, i);
+    const bool is_same =
+        !chart.people.empty() && chart.people.back().people == now.people && chart.people.back().likely == now.likely;
     if (!is_same) chart.people.push_back(now);
   }
   if (rows.clock != LogClock::elapsed && day.begin + 1 < rows.n_windows())
@@ -99,36 +92,91 @@ io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
 io::Table hours_table(const LogCounts& counts, const std::vector<Day>& days) {
   io::Table table{{"day"}, {}};
   for (std::size_t n = 0; n < n_counts(counts); ++n) table.headings.push_back(counted(n, "person", "people") + ", h");
+  table.headings.emplace_back("unknown, h");
   for (const Day& day : days) {
-    std::vector<double> hours(n_counts(counts), 0.0);
-    for (std::size_t i = day.begin; i < day.end; ++i)
-      hours[static_cast<std::size_t>(counts.estimates.count(i))] += counts.rows.window_s / 3600.0;
+    std::vector<double> hours(n_counts(counts) + 1, 0.0);
+    for (std::size_t i = day.begin; i < day.end; ++i) {
+      const std::size_t column =
+          counts.estimates.is_told(i) ? static_cast<std::size_t>(counts.estimates.count(i)) : n_counts(counts);
+      hours[column] += counts.rows.window_s / 3600.0;
+    }
     std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.name});
     for (const double one : hours) row.push_back(fixed(one, 1));
   }
   return table;
 }
 
-}  // namespace
-
-LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass) {
-  if (static_cast<int>(rows.sensors.size()) != counter.n_sensors) {
+void require_fit(const counting::Counter& counter, const LogRows& rows, const LogTraits& log) {
+  std::vector<std::string> own = counter.sensors, others = log.sensors;
+  std::ranges::sort(own);
+  std::ranges::sort(others);
+  const bool are_others = !own.empty() && !others.empty() && own != others;
+  if (static_cast<int>(rows.sensors.size()) != counter.n_sensors || are_others) {
     throw Error(ErrorCode::input, "the counter is for " +
                                       counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
+                                      (own.empty() ? "" : " (" + joined(counter.sensors, ", ") + ")") +
                                       ", and the log has " + std::to_string(rows.sensors.size()) + ": " +
-                                      joined(rows.sensors, ", ") + "; a map (--map) chooses among them");
+                                      joined(rows.sensors, ", ") + "; a map (--map) chooses among them" +
+                                      (own.empty() ? ""
+                                                   : " and names them, `sensors: {" + counter.sensors.front() + ": " +
+                                                         rows.sensors.front() + ", ...}`"));
   }
+  if (log.interval_s <= counter.settings.step_s * (1.0 + 1e-6)) return;
+  throw Error(ErrorCode::input, "the log has a reading every " + shortest_number(log.interval_s) +
+                                    " s, and the counter counts by readings of " +
+                                    shortest_number(counter.settings.step_s) +
+                                    " s: it can't tell what was between. Make a counter of such a log "
+                                    "(pirsim calibrate --step " +
+                                    shortest_number(std::ceil(log.interval_s)) + ")");
+}
+
+/// Holds that differ.
+std::vector<std::string> remarks_of(const counting::Counter& counter, const LogTraits& log) {
+  std::vector<std::string> remarks;
+  for (std::size_t k = 0; k < log.holds_s.size(); ++k) {
+    const auto own = std::ranges::find(counter.sensors, log.sensors[k]);
+    if (own == counter.sensors.end() || counter.holds_s.empty()) continue;
+    const std::optional<double> known = counter.holds_s[static_cast<std::size_t>(own - counter.sensors.begin())];
+    constexpr double least_share = 0.2, least_s = 1.0;  // assumed (0.1-0.5, 0.5-2): logs of one sensor differ by less
+    if (!known || !log.holds_s[k]) continue;
+    const double by_s = std::abs(*log.holds_s[k] - *known);
+    if (by_s <= std::max(least_s, least_share * *known)) continue;
+    remarks.push_back("'" + log.sensors[k] + "' holds motion for " + fixed(*log.holds_s[k], 1) +
+                      " s in this log, and for " + fixed(*known, 1) +
+                      " s in the one that the counter comes from: its counts may be off");
+  }
+  return remarks;
+}
+
+}  // namespace
+
+LogTraits traits_of(const Log& log) {
+  LogTraits traits{static_cast<double>(log.interval_us) * 1e-6, {}, {}};
+  for (const LogSensorFacts& sensor : facts_of(log).sensors) {
+    traits.sensors.push_back(sensor.name);
+    traits.holds_s.push_back(sensor.hold_s);
+  }
+  return traits;
+}
+
+void remember(const LogTraits& log, counting::Counter& counter) {
+  counter.sensors = log.sensors;
+  counter.holds_s = log.holds_s;
+}
+
+LogCounts count_log(const counting::Counter& counter, LogRows rows, const LogTraits& log, counting::Pass pass) {
+  require_fit(counter, rows, log);
   counting::Stretch stretch = whole_log(rows);
   stretch.people.clear();  // a count is made without a look at the answer
   counting::Estimates estimates = counting::estimate(counter, stretch, pass);
-  return {std::move(rows), std::move(estimates), counter.expected_error, counter.warning};
+  return {std::move(rows), std::move(estimates), counter.expected_error, counter.warning, remarks_of(counter, log)};
 }
 
 std::optional<CountError> error_of(const LogCounts& counts) {
   CountError error;
   for (std::size_t i = 0; i < counts.rows.people.size(); ++i) {
     const int people = counts.rows.people[i];
-    if (people == log_state::unknown_count) continue;
+    if (people == log_state::unknown_count || !counts.estimates.is_told(i)) continue;
     const double off = std::abs(counts.estimates.count(i) - people);
     error.mean += off;
     ++error.readings;
@@ -152,19 +200,23 @@ std::string in_words(const CountError& error) {
 
 std::string how_sure(const LogCounts& counts) {
   constexpr double sure = 0.8;  // assumed: one of five such numbers may be another
-  std::size_t n = 0, n_sure = 0;
+  std::size_t n = 0, n_sure = 0, n_unknown = 0;
   for (std::size_t i = 0; i < counts.rows.n_windows(); ++i) {
     const int people = counts.estimates.count(i);
-    if (people == 0) continue;
+    n_unknown += people == counting::unknown_count ? 1U : 0U;
+    if (people <= 0) continue;
     ++n;
     n_sure += probabilities(counts, i)[static_cast<std::size_t>(people)] >= sure ? 1U : 0U;
   }
-  if (n == 0) return {};
   const auto hours = [&](std::size_t readings) {
     return fixed(static_cast<double>(readings) * counts.rows.window_s / 3600.0, 1);
   };
-  return "Somebody is there for " + hours(n) + " h; the number is told with 80 % or more for " + hours(n_sure) +
-         " h of them.";
+  std::string told = n == 0 ? ""
+                            : "Somebody is there for " + hours(n) + " h; the number is told with 80 % or more for " +
+                                  hours(n_sure) + " h of them.";
+  if (n_unknown > 0)
+    told += (n == 0 ? "" : " ") + ("For " + hours(n_unknown)) + " h nothing is known, and no number is told.";
+  return told;
 }
 
 void write_counts(std::ostream& out, const LogCounts& counts) {
@@ -179,8 +231,9 @@ void write_counts(std::ostream& out, const LogCounts& counts) {
     if (i + 1 < rows.n_windows()) end.offset_s = rows.begin[i + 1].offset_s;
     std::string line = has_clock ? to_text(end, rows.clock) : io::csv_number(end.seconds());
     const auto of_reading = probabilities(counts, i);
-    line += ',' + std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2);
-    for (const double p : of_reading) line += ',' + fixed(p, 3);
+    const bool is_told = counts.estimates.is_told(i);
+    line += ',' + (is_told ? std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2) : ",");
+    for (const double p : of_reading) line += ',' + (is_told ? fixed(p, 3) : "");
     out << line << '\n';
   }
 }

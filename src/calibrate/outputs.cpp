@@ -52,7 +52,7 @@ std::string numbers(const Calibration& calibration, const About& about) {
             {"recipe", about.recipe},
             {"log", about.log},
             {"days", about.n_days},
-            {"partial_days", about.n_partial},
+            {"partial_days", about.partial},
             {"rooms", calibration.rooms.size()},
             {"effective_rooms", calibration.effective_rooms},
             {"mean_error", calibration.mean_error},

@@ -179,12 +179,16 @@ std::string finding(const Calibration& calibration) {
 
 std::string days_compared(const About& about) {
   const std::string hours = "from " + hours_text(about.hours.low) + " to " + hours_text(about.hours.high);
-  if (about.n_days == 0 && about.n_partial > 0)
-    return "none of " + counted(about.n_partial, "day") + ", since it has less than nine tenths of the time " + hours +
-           ": so there will be no verdict; let the recipe's schedule have hours that the log has";
-  if (about.n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
-  return std::to_string(about.n_days) + " of " + counted(about.n_days + about.n_partial, "day") + ", " + hours +
-         "; of the others it has less than nine tenths of these hours";
+  const std::size_t n_partial = about.partial.size();
+  if (n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
+  constexpr std::size_t most_told = 7;
+  std::string dates = joined({about.partial.begin(), about.partial.begin() + std::min(most_told, n_partial)}, ", ");
+  if (n_partial > most_told) dates += " and " + counted(n_partial - most_told, "other");
+  return (about.n_days == 0 ? "none" : std::to_string(about.n_days)) + " of " +
+         counted(about.n_days + n_partial, "day") + ", " + hours + ": on " + dates +
+         " a sensor is known for less than nine tenths of these hours" +
+         (about.n_days == 0 ? "; so there will be no verdict: let the recipe's schedule have hours that the log has"
+                            : "");
 }
 
 io::Report page(const Calibration& calibration, const About& about) {

@@ -167,6 +167,18 @@ void append(const LogRows& rows, std::size_t window, counting::Stretch& stretch)
   if (is_counted) stretch.people.push_back(rows.people[window]);
 }
 
+/// Readings of which the sensor is known that is known least.
+std::size_t least_known(const counting::Stretch& stretch) {
+  std::size_t least = stretch.n_readings();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(stretch.n_sensors); ++k) {
+    std::size_t known = 0;
+    for (std::size_t i = k; i < stretch.motion.size(); i += static_cast<std::size_t>(stretch.n_sensors))
+      known += stretch.motion[i] == counting::unknown_bit ? 0 : 1;
+    least = std::min(least, known);
+  }
+  return least;
+}
+
 }  // namespace
 
 counting::Stretch whole_log(const LogRows& rows) {
@@ -176,25 +188,31 @@ counting::Stretch whole_log(const LogRows& rows) {
 }
 
 LogDays days_of(const LogRows& rows, const Interval& hours) {
-  if (rows.clock == LogClock::elapsed) return {{whole_log(rows)}};
-  constexpr double hour_us = 3600e6;
-  constexpr std::int64_t day_us = 86'400'000'000;
-  LogDays days;
-  std::optional<std::int64_t> last_day;
-  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    const std::int64_t local_us = rows.begin[i].local_us();
-    const std::int64_t day = local_us >= 0 ? local_us / day_us : (local_us + 1) / day_us - 1;
-    const double hour = static_cast<double>(local_us - day * day_us) / hour_us;
-    if (hour < hours.low || hour >= hours.high) continue;
-    if (day != last_day) days.whole.push_back({static_cast<int>(rows.sensors.size()), {}});
-    last_day = day;
-    append(rows, i, days.whole.back());
-  }
   constexpr double least_share = 0.9;  // assumed: half a day has other statistics than a day
-  const double whole = (hours.high - hours.low) * 3600.0 / rows.window_s;
-  days.n_partial = std::erase_if(days.whole, [&](const counting::Stretch& day) {
-    return static_cast<double>(day.n_readings()) < least_share * whole;
-  });
+  const bool has_clock = rows.clock != LogClock::elapsed;
+  const auto is_within = [&](const LogMoment& moment) {
+    constexpr std::int64_t day_us = 86'400'000'000;
+    constexpr double hour_us = 3600e6;
+    const std::int64_t local_us = moment.local_us(), into_us = (local_us % day_us + day_us) % day_us;
+    const double hour = static_cast<double>(into_us) / hour_us;
+    return !has_clock || (hour >= hours.low && hour < hours.high);
+  };
+  std::vector<std::pair<std::string, counting::Stretch>> each;
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    if (!is_within(rows.begin[i])) continue;
+    const std::string date = has_clock ? to_text(rows.begin[i], rows.clock).substr(0, 10) : "the one day of the log";
+    if (each.empty() || each.back().first != date) each.push_back({date, {static_cast<int>(rows.sensors.size()), {}}});
+    append(rows, i, each.back().second);
+  }
+  LogDays days;
+  for (auto& [date, day] : each) {
+    const double whole =
+        has_clock ? (hours.high - hours.low) * 3600.0 / rows.window_s : static_cast<double>(day.n_readings());
+    if (static_cast<double>(least_known(day)) < least_share * whole)
+      days.partial.push_back(date);
+    else
+      days.whole.push_back(std::move(day));
+  }
   return days;
 }
 

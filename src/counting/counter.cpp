@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "counting/passes.hpp"
 #include "pirsim/error.hpp"
@@ -11,6 +12,9 @@ namespace {
 void add_counts(std::span<const double> beliefs, double weight, std::size_t modes, std::span<double> counts) {
   for (std::size_t state = 0; state < beliefs.size(); ++state) counts[state / modes] += weight * beliefs[state];
 }
+
+constexpr double nobody_knows = std::numeric_limits<double>::quiet_NaN();
+constexpr double never_s = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -35,6 +39,22 @@ void weigh(Counter& counter, std::span<const double> log_likelihoods) {
   for (RoomModel& room : counter.rooms) room.weight /= sum;
 }
 
+std::vector<char> told_readings(const Stretch& stretch, double step_s, Pass pass) {
+  const std::vector<Reading> readings = readings_of(stretch);
+  std::vector<char> told(readings.size(), 0);
+  double unknown_s = never_s;
+  const auto look = [&](std::size_t i) {
+    unknown_s = readings[i].known > 0 ? 0.0 : unknown_s + step_s;
+    if (unknown_s <= longest_guess_s) told[i] = 1;
+  };
+  for (std::size_t i = 0; i < readings.size(); ++i) look(i);
+  unknown_s = never_s;
+  for (std::size_t i = readings.size(); pass == Pass::smoothed && i-- > 0;) look(i);
+  return told;
+}
+
+bool Estimates::is_told(std::size_t reading) const { return !std::isnan(probabilities[reading * size(n_counts)]); }
+
 int Estimates::quantile(std::size_t reading, double share) const {
   double reached = 0.0;
   for (int n = 0; n < n_counts - 1; ++n) {
@@ -51,13 +71,19 @@ Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
   for (const RoomModel& room : counter.rooms) {
     if (!(room.weight > 0.0)) continue;
     std::vector<double> own = forward(counter, room, readings).beliefs;
-    if (pass == Pass::smoothed) smooth(counter, room, readings, own);
+    if (pass == Pass::smoothed) smooth(counter, readings, own);
     add_counts(own, room.weight, modes, mixed.probabilities);
+  }
+  const std::vector<char> told = told_readings(stretch, counter.settings.step_s, pass);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i] == 0)
+      std::ranges::fill(std::span(mixed.probabilities).subspan(i * size(mixed.n_counts), size(mixed.n_counts)),
+                        nobody_knows);
   }
   return mixed;
 }
 
-LiveCount::LiveCount(const Counter& counter) : counter_(&counter) {}
+LiveCount::LiveCount(const Counter& counter) : counter_(&counter), unknown_s_(never_s) {}
 
 std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
   const Counter& counter = *counter_;
@@ -75,6 +101,8 @@ std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
     add_counts(now, counter.rooms[r].weight, size(counter.settings.modes), counts);
   }
   belief_ = std::move(next);
+  unknown_s_ = reading.known > 0 ? 0.0 : unknown_s_ + counter.settings.step_s;
+  if (unknown_s_ > longest_guess_s) std::ranges::fill(counts, nobody_knows);
   return counts;
 }
 

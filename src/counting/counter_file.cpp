@@ -8,6 +8,7 @@
 #include "io/files/input.hpp"
 #include "pirsim/counting.hpp"
 #include "pirsim/error.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::counting {
 namespace {
@@ -48,11 +49,34 @@ int whole(const Json& json, const char* what, int least, int most) {
   return json.get<int>();
 }
 
-/// No reading is impossible, whoever is there: else there may be nobody left to believe in.
+/// No reading is impossible, whoever is there: else there may be nobody left to believe in. Products with moves and
+/// beliefs stay far above the least number that there is.
 std::vector<double> emissions(const Json& json, std::size_t n_states, std::size_t n_symbols) {
+  constexpr double least = 1e-100;  // assumed: of training the least is some 1e-9
   std::vector<double> values = probabilities(json, n_states, n_symbols);
-  if (std::ranges::find(values, 0.0) != values.end()) throw std::domain_error("an emission isn't above 0");
+  if (!std::ranges::all_of(values, [](double value) { return value >= least; }))
+    throw std::domain_error("an emission is below 1e-100: no reading is impossible");
   return values;
+}
+
+std::vector<std::string> names(const Json& json, int n_sensors) {
+  auto names = json.get<std::vector<std::string>>();
+  if (names.size() != size(n_sensors)) throw std::domain_error("sensor_names has another number of names than sensors");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::ranges::find(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), names[i]) != names.end())
+      throw std::domain_error("sensor_names has '" + names[i] + "' twice");
+  }
+  return names;
+}
+
+std::vector<std::optional<double>> holds(const Json& json, int n_sensors) {
+  std::vector<std::optional<double>> holds;
+  for (const Json& one : json) {
+    if (!one.is_null() && !(one.get<double>() >= 0.0)) throw std::domain_error("holds_s has a value below 0");
+    holds.push_back(one.is_null() ? std::nullopt : std::optional(one.get<double>()));
+  }
+  if (holds.size() != size(n_sensors)) throw std::domain_error("holds_s has another number of values than sensors");
+  return holds;
 }
 
 const Json& member(const Json& json, const char* key) {
@@ -88,6 +112,9 @@ Counter counter_from(const Json& json) {
   if (const auto error = json.find("expected_error"); error != json.end())
     counter.expected_error = Interval{error->at(0).get<double>(), error->at(1).get<double>()};
   if (const auto warning = json.find("warning"); warning != json.end()) counter.warning = warning->get<std::string>();
+  if (const auto told = json.find("sensor_names"); told != json.end())
+    counter.sensors = names(*told, counter.n_sensors);
+  if (const auto told = json.find("holds_s"); told != json.end()) counter.holds_s = holds(*told, counter.n_sensors);
   return counter;
 }
 
@@ -103,21 +130,29 @@ void write_counter(const std::filesystem::path& file, const Counter& counter) {
             {"sensors", counter.n_sensors},     {"counts", counter.n_counts},        {"moves", counter.moves},
             {"rooms", std::move(rooms)}};
   if (!counter.warning.empty()) json["warning"] = counter.warning;
+  if (!counter.sensors.empty()) json["sensor_names"] = counter.sensors;
+  for (const std::optional<double>& hold_s : counter.holds_s)
+    json["holds_s"].push_back(hold_s ? Json(*hold_s) : Json());
   if (counter.expected_error) json["expected_error"] = {counter.expected_error->low, counter.expected_error->high};
   io::write_text_file(file, json.dump() + '\n');
 }
 
-Counter read_counter(const std::filesystem::path& file) {
-  const io::Input input = io::read_input(file);
+std::string read_counter_bytes(const std::filesystem::path& file) {
+  return io::read_input(file, limits::counter_bytes).bytes;
+}
+
+Counter parse_counter(std::string_view bytes, const std::string& name) {
   try {
-    return counter_from(Json::parse(input.bytes));
+    return counter_from(Json::parse(bytes));
   } catch (const nlohmann::json::parse_error&) {
-    throw Error(ErrorCode::input, Where{file.string()},
-                "isn't a counter: pirsim calibrate and pirsim.counting write one");
+    throw Error(ErrorCode::input, Where{name}, "isn't a counter: pirsim calibrate and pirsim.counting write one");
   } catch (const std::exception& fault) {
-    throw Error(ErrorCode::input, Where{file.string()},
-                std::string("isn't a counter as it should be: ") + fault.what());
+    throw Error(ErrorCode::input, Where{name}, std::string("isn't a counter as it should be: ") + fault.what());
   }
+}
+
+Counter read_counter(const std::filesystem::path& file) {
+  return parse_counter(read_counter_bytes(file), file.string());
 }
 
 }  // namespace pirsim::counting

@@ -93,33 +93,29 @@ ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<con
   return pass;
 }
 
-void smooth(const Counter& counter, const RoomModel& room, std::span<const Reading> readings,
-            std::vector<double>& beliefs, std::span<double> moved) {
+void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
+            std::span<double> moved) {
   const std::size_t n = size(counter.n_states());
-  std::vector<double> later(n, 1.0), ahead(n, 0.0), seen;
-  for (std::size_t i = readings.size(); i-- > 0;) {
-    const std::span<double> now(beliefs.data() + i * n, n);
-    const StateRange range = states_of(counter, readings[i]);
-    if (i + 1 < readings.size()) {
-      const StateRange next = states_of(counter, readings[i + 1]);
-      likelihood(counter, room.emissions, readings[i + 1], seen);
-      double sum = 0.0;  // of what comes after, over the moves that are possible
-      std::ranges::fill(ahead, 0.0);
-      for (std::size_t from = range.begin; from < range.end; ++from) {
-        for (std::size_t to = next.begin; to < next.end; ++to)
-          ahead[from] += counter.moves[from * n + to] * seen[to] * later[to];
-        sum += now[from] * ahead[from];
-      }
-      if (!moved.empty()) {
-        for (std::size_t from = range.begin; from < range.end; ++from) {
-          for (std::size_t to = next.begin; to < next.end; ++to)
-            moved[from * n + to] += now[from] * counter.moves[from * n + to] * seen[to] * later[to] / sum;
-        }
-      }
-      later = ahead;
-      normalize(later);
+  constexpr double most_ratio = 1e290;  // finite, however sure the past was of what the future refutes
+  std::vector<double> ratio(n);         // of what is believed of the next reading to what was expected of it
+  for (std::size_t i = readings.size() < 2 ? 0 : readings.size() - 1; i-- > 0;) {
+    const std::span<double> now(beliefs.data() + i * n, n), next(beliefs.data() + (i + 1) * n, n);
+    const StateRange range = states_of(counter, readings[i]), after = states_of(counter, readings[i + 1]);
+    std::ranges::fill(ratio, 0.0);
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      for (std::size_t to = after.begin; to < after.end; ++to) ratio[to] += now[from] * counter.moves[from * n + to];
     }
-    for (std::size_t state = 0; state < n; ++state) now[state] *= later[state];
+    for (std::size_t to = after.begin; to < after.end; ++to)
+      ratio[to] = next[to] > 0.0 ? std::min(next[to] / ratio[to], most_ratio) : 0.0;
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      double later = 0.0;
+      for (std::size_t to = after.begin; to < after.end; ++to) {
+        const double factor = counter.moves[from * n + to] * ratio[to];
+        later += factor;
+        if (!moved.empty()) moved[from * n + to] += now[from] * factor;
+      }
+      now[from] *= later;
+    }
     normalize(now);
   }
 }

@@ -36,8 +36,8 @@ struct ForwardPass {
 [[nodiscard]] ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings);
 /// Forward beliefs become those that know what came after. moved, if not empty: (states x states), to which the
 /// expected number of each move is added.
-void smooth(const Counter& counter, const RoomModel& room, std::span<const Reading> readings,
-            std::vector<double>& beliefs, std::span<double> moved = {});
+void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
+            std::span<double> moved = {});
 /// One step: belief before a reading to that after it, of which the likelihood is returned. before: empty at the first.
 double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
             const Reading& reading, std::span<double> after);

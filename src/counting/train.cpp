@@ -101,7 +101,7 @@ Expected expected_of(const Counter& counter, const LabelledRoom& room, const Roo
   for (const Stretch& day : room.days) {
     const std::vector<Reading> readings = readings_of(day);
     std::vector<double> beliefs = forward(counter, model, readings).beliefs;
-    smooth(counter, model, readings, beliefs, expected.moved);
+    smooth(counter, readings, beliefs, expected.moved);
     for (std::size_t i = 0; i < readings.size(); ++i) {
       for (std::size_t state = 0; state < n; ++state) {
         const double belief = beliefs[i * n + state];

@@ -49,6 +49,7 @@ inline constexpr std::size_t measured_replicates = 10'000;  ///< of a trial: 27 
 inline constexpr std::size_t log_columns = 10'000;
 inline constexpr std::size_t log_changes = 20'000'000;  ///< of all sensors; 24 bytes each
 inline constexpr std::size_t log_windows = 1'000'000'000;
-inline constexpr std::size_t log_cells = 2'000'000'000;  ///< windows x sensors that are asked for at once
+inline constexpr std::size_t log_cells = 2'000'000'000;    ///< windows x sensors that are asked for at once
+inline constexpr std::size_t counter_bytes = 200'000'000;  ///< of a file: 10,000 rooms of 10 counts and 10 sensors
 
 }  // namespace pirsim::limits

@@ -123,7 +123,22 @@ class OwnRoom(unittest.TestCase):
         told = self.calibrate(made, log=[late])[1]
         self.assertRegex(told, r"of the log are compared none of 1 day, .*no verdict(.|\n)*wrote .*datapackage.json")
         numbers = json.loads((made / "calibration.json").read_text())
-        self.assertEqual((numbers["days"], numbers["partial_days"], numbers["verdict"]), (0, 1, "too-little-told"))
+        self.assertEqual((numbers["days"], numbers["verdict"]), (0, "too-little-told"))
+        self.assertEqual(numbers["partial_days"], [datetime.date.fromisoformat(lines[1][:10].replace("/", "-")).isoformat()])
+
+    def test_a_day_with_an_outage_is_not_compared(self):
+        events = ["time,sensor,state"]
+        for day in (2, 3):
+            for sensor in "AB":
+                events.append(f"2026-03-0{day}T07:59:00,{sensor},off")
+                events += [f"2026-03-0{day}T08:{minute:02d}:00,{sensor},{'on' if minute % 2 else 'off'}"
+                           for minute in range(60) if day == 2 or minute < 20 or minute > 30]
+        events += [f"2026-03-03T08:20:00,{sensor},unavailable" for sensor in "AB"]
+        log = self.write("outage.csv", "\n".join([events[0], *sorted(events[1:])]) + "\n")
+        made = self.folder / "outage"
+        told = self.calibrate(made, log=[log])[1]
+        self.assertIn("1 of 2 days, from 8:00 to 9:00: on 2026-03-03 a sensor is known for less than nine tenths", told)
+        self.assertEqual(json.loads((made / "calibration.json").read_text())["partial_days"], ["2026-03-03"])
 
     def test_the_rows_of_a_log_are_counted_as_the_log_is(self):
         """Also of readings that come a little more slowly than the usual window, so that another counter's step is theirs."""
@@ -156,6 +171,32 @@ class OwnRoom(unittest.TestCase):
             self.assertAlmostEqual(sum(n * q for n, q in enumerate(p)), float(row["mean"]), delta=0.02)
         self.assertIn("How many people were there?", page.read_text())
 
+    def test_through_a_gap_nobody_is_counted_and_another_hold_is_told(self):
+        events = ["time,sensor,state"]
+        for minute in range(60):  # each pulse lasts 12 s
+            for sensor, second in (("a", 0), ("b", 20)):
+                for s, state in ((second, "on"), (second + 12, "off")):
+                    events.append(f"2026-03-02T08:{minute:02d}:{s:02d},{sensor},{state}")
+        made = self.folder / "gap"
+        self.calibrate(made, log=[self.write("twelve.csv", "\n".join(events) + "\n")])
+        self.assertEqual(json.loads((made / "counter.json").read_text())["holds_s"], [12, 12])
+        later = [events[0]]
+        for line in events[1:]:
+            time, sensor, state = line.split(",")
+            if not "T08:20" <= time[10:16] < "T08:40":
+                later.append(line.replace(":12,a,off", ":19,a,off"))
+        later += [f"2026-03-02T08:20:00,{sensor},unavailable" for sensor in "ab"]
+        later = self.write("later.csv", "\n".join([later[0], *sorted(later[1:])]) + "\n")
+        rows, told = run("count", made / "counter.json", "--log", later)
+        self.assertRegex(told, r"warning: 'a' holds motion for 19.0 s in this log, and for 12.0 s")
+        self.assertNotIn("'b' holds", told)
+        self.assertRegex(told, r"For 0.2 h nothing is known, and no number is told")
+        unknown = [row["time"][11:] for row in csv.DictReader(rows.splitlines()) if row["people"] == ""]
+        # Twenty minutes less five on either side, of readings of half a minute that are told at their end.
+        self.assertEqual((unknown[0], unknown[-1], len(unknown)), ("08:25:30", "08:35:00", 20))
+        for row in csv.DictReader(rows.splitlines()):
+            self.assertEqual(len({cell == "" for name, cell in row.items() if name != "time"}), 1)
+
     def test_counting_doesnt_look_at_the_logs_own_counts(self):
         with_counts, _ = run("count", self.made / "counter.json", "--log", *self.labelled, "-q")
         without, _ = run("count", self.made / "counter.json", "--log", *self.log, "-q")
@@ -174,13 +215,29 @@ class OwnRoom(unittest.TestCase):
             self.assertIn(words, told)
             subprocess.run(["rm", "-rf", out], check=True)
         _, told = run("count", self.made / "counter.json", "--log", three, code=3)
-        self.assertIn("the counter is for 2 sensors, and the log has 3: A, B, C", told)
+        names = json.loads((self.made / "counter.json").read_text())["sensor_names"]
+        self.assertIn(f"the counter is for 2 sensors ({', '.join(names)}), and the log has 3: A, B, C", told)
+        lines = self.log[0].read_text().splitlines(keepends=True)
+        slow = self.write("every_300_s.csv", lines[0] + "".join(lines[10::10]))
+        _, told = run("count", self.made / "counter.json", "--log", slow, code=3)
+        self.assertIn("the log has a reading every 300 s, and the counter counts by readings of 30 s", told)
+        two = self.write("two.csv", "time,A,B\n" + "".join(f"2026-03-02T08:{i // 2:02d}:{i % 2 * 30:02d},{i % 3 // 2},0\n"
+                                                          for i in range(40)))
+        _, told = run("count", self.made / "counter.json", "--log", two, code=3)
+        self.assertIn("has 2: A, B; a map (--map)", told)
+        named = self.write("named.yaml", f"pirsim_log: 1\nsensors: {{{names[1]}: A, {names[0]}: B}}\n")
+        run("count", self.made / "counter.json", "--log", two, "--map", named)
+        counter = json.loads((self.made / "counter.json").read_text())
+        del counter["sensor_names"], counter["holds_s"]  # as of older files
+        _, told = run("count", self.write("older.json", json.dumps(counter)), "--log", two)
+        self.assertIn("it doesn't tell which sensors it is for: the log's are taken for them (A, B)", told)
         for text in ("", "{}", "[1]", '{"pirsim_counter": 2}', (self.made / "counter.json").read_text()[:-50]):
             _, told = run("count", self.write("spoilt.json", text), "--log", self.log[0], code=3)
             self.assertIn("isn't a counter", told)
 
     def test_a_log_in_utc_asks_for_the_zone(self):
-        log = self.write("utc.csv", "time,A,B\n" + "".join(
+        names = ",".join(json.loads((self.made / "counter.json").read_text())["sensor_names"])
+        log = self.write("utc.csv", f"time,{names}\n" + "".join(
             f"2026-03-02T07:{i // 2:02d}:{i % 2 * 30:02d}Z,{i % 3 == 0:d},{i % 5 == 0:d}\n" for i in range(120)))
         _, told = run("count", self.made / "counter.json", "--log", log)
         self.assertIn("--time-zone", told)

@@ -1,8 +1,10 @@
 """Counters compute what docs/formats/counter.md says, by every path of a short chain and by the page's own program."""
 
+import concurrent.futures
 import itertools
 import json
 import math
+import os
 import re
 
 import numpy as np
@@ -163,7 +165,10 @@ HOSTILE = [
     (changed(moves=[0.2] * 36), "don't add up to 1"), (changed(moves=[2.0, -1.0, 0, 0, 0, 0] * 6), "between 0 and 1"),
     (changed(rooms=[]), "weights don't add up to 1"), (changed(rooms=[5]), "room is missing"),
     (changed_room(weight=-0.5), "a weight is below 0"), (changed_room(weight=0.9), "weights don't add up to 1"),
-    (changed_room(first=[0.5] * 6), "don't add up to 1"), (changed_room(emissions=[1.0, 0.0, 0.0] * 6), "isn't above 0"),
+    (changed_room(first=[0.5] * 6), "don't add up to 1"), (changed_room(emissions=[1.0, 0.0, 0.0] * 6), "is below 1e-100"),
+    (changed_room(emissions=[1.0, 5e-324, 0.0] * 6), "is below 1e-100"), (changed(sensor_names=["a"]), "another number of"),
+    (changed(sensor_names=["a", "a"]), "'a' twice"), (changed(sensor_names=[1, 2]), "isn't a counter as it should be"),
+    (changed(holds_s=[-1, None]), "below 0"), (changed(holds_s=[1.0]), "another number of"),
     (changed(expected_error=3), "isn't a counter as it should be"),
     (json.dumps(changed()).replace("30.0", "NaN"), "isn't a counter"),
     (json.dumps(changed()).replace("30.0", "1e999"), "isn't a counter"),
@@ -175,6 +180,16 @@ def test_a_file_that_is_no_counter_is_refused_in_a_line(saved, why, load):
     with pytest.raises(pirsim.InputError, match=re.escape(why)) as refused:
         load(saved)
     assert len(str(refused.value).splitlines()) == 1 and "counter.json: error: " in str(refused.value)
+
+
+def test_a_counter_comes_through_a_pipe_and_an_endless_file_ends(tmp_path):
+    saved = json.dumps(random_counter((2, 3, 2)))
+    os.mkfifo(tmp_path / "pipe")
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        pool.submit((tmp_path / "pipe").write_text, saved)
+        assert counting.load(tmp_path / "pipe").moves.ravel().tolist() == json.loads(saved)["moves"]
+    with pytest.raises(pirsim.InputError, match="larger than 200 MB"):
+        counting.load("/dev/zero")
 
 
 def test_files_that_cant_be_read(tmp_path):
@@ -195,7 +210,8 @@ def test_bits_in_any_form(load):
     counter, bits = load(random_counter((2, 3, 2))), random_bits(50, 2)
     expected = counter.estimate(bits).probabilities
     as_floats = np.where(bits == 2, np.nan, bits.astype(float))
-    for given in (as_floats, bits.astype(int), np.asfortranarray(bits), bits.tolist()):
+    masked = np.ma.masked_array(bits == 1, bits == 2)
+    for given in (as_floats, masked, np.ma.masked_array(bits, bits == 2, fill_value=1), bits.astype(int), np.asfortranarray(bits), bits.tolist()):
         assert np.array_equal(counter.estimate(given).probabilities, expected)
     assert counter.estimate(np.empty((0, 2))).people.shape == (0,)
     with pytest.raises(pirsim.InputError, match="for 2 sensors, and the log has 3"):
@@ -203,6 +219,63 @@ def test_bits_in_any_form(load):
     one = load(random_counter((1, 2, 1)))
     assert np.array_equal(one.estimate([0, 1, 1]).probabilities, one.estimate([[0], [1], [1]]).probabilities)
     assert one.estimate([0, 1, 1]).time.tolist() == [30.0, 60.0, 90.0]
+
+
+def test_masked_bits_are_unknown_live_and_masked_people_in_training(load):
+    counter, bits = load(random_counter((2, 3, 2))), random_bits(20, 2)
+    live, masked = counter.live(), counter.live()
+    for reading in bits:
+        assert np.array_equal(masked.next(np.ma.masked_array(reading == 1, reading == 2)), live.next(reading))
+    people = np.array([0, 1, 1, 0] * 5)
+    hidden = people == 1
+    hidden[:4] = False
+    days = [counting.Day(1, bits, np.ma.masked_array(people, hidden)), counting.Day(1, bits, np.where(hidden, -1, people))]
+    moves = [counting.train([day]).moves for day in days]
+    assert np.array_equal(*moves) and not np.array_equal(moves[0], counting.train([days[0]._replace(people=people)]).moves)
+
+
+def test_nobody_is_counted_where_nothing_has_been_known_for_five_minutes(load, tmp_path):
+    counter, bits = load(random_counter((2, 3, 2))), random_bits(100, 2, unknown=0.0)
+    bits[20:60] = 2
+    bits[60:, 1] = 2  # one sensor is enough
+    for smoothed, told in ((True, [*range(30), *range(50, 100)]), (False, [*range(30), *range(60, 100)])):
+        estimates = counter.estimate(bits, smoothed)
+        assert np.flatnonzero(estimates.people >= 0).tolist() == told
+        assert np.array_equal(np.isnan(estimates.probabilities).any(axis=1), estimates.people == -1)
+        assert np.array_equal(np.isnan(estimates.mean), estimates.people == -1)
+        assert f"{100 - len(told)} unknown" in repr(estimates)
+    live = counter.live()
+    assert [live.next(reading)[0] >= 0 for reading in bits] == [i in told for i in range(100)]
+    assert live.people is not None
+    estimates.write_csv(tmp_path / "counts.csv")
+    assert (tmp_path / "counts.csv").read_text().splitlines()[41] == "1230,,,,,"
+    pytest.importorskip("pandas")
+    assert estimates.to_pandas()["people"].isna().sum() == 30
+
+
+def test_a_counter_remembers_its_sensors_holds_and_step(load, tmp_path):
+    saved = {**random_counter((2, 3, 2)), "sensor_names": ["left", "right"], "holds_s": [10.0, None]}
+    counter = load(saved)
+    assert (counter.sensors, counter.holds_s) == (("left", "right"), (10.0, None))
+    assert load(random_counter((2, 3, 2))).sensors is None
+    counter.save(tmp_path / "again.json")
+    assert json.loads((tmp_path / "again.json").read_text()) == saved
+    write_log(tmp_path / "log.csv")
+    counter.estimate(tmp_path / "log.csv", map={"sensors": {"left": "right", "right": "left"}})
+    with pytest.raises(pirsim.InputError, match=r"2 sensors \(left, right\), and the log has 2: PIR1, PIR2"):
+        counter.estimate(tmp_path / "log.csv", map={"sensors": {"PIR1": "right", "PIR2": "left"}})
+    lines = (tmp_path / "log.csv").read_text().splitlines()
+    (tmp_path / "slow.csv").write_text("\n".join([lines[0], *lines[1::10]]) + "\n")
+    with pytest.raises(ValueError, match="a reading every 300 s and the counter one every 30 s"):
+        counter.estimate(tmp_path / "slow.csv")
+    events = ["time,sensor,state"]  # each pulse lasts 90 s at one, 2 s at the other
+    for minute in range(0, 60, 2):
+        for sensor, second, length in (("left", 0, 90), ("right", 20, 2)):
+            for s, state in ((second, "on"), (second + length, "off")):
+                events.append(f"2026-03-02T08:{minute + s // 60:02d}:{s % 60:02d},{sensor},{state}")
+    (tmp_path / "events.csv").write_text("\n".join([events[0], *sorted(events[1:])]) + "\n")
+    with pytest.warns(pirsim.errors.InputWarning, match="'left' holds motion for 90.0 s in this log, and for 10.0 s"):
+        counter.estimate(tmp_path / "events.csv")
 
 
 def write_log(file, n=240, seed=3):

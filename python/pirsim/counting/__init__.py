@@ -18,7 +18,7 @@ from .._study import PathOr, as_path
 from ._calibration import Calibration, ParameterRange, Statistic, WeighedRoom, calibrate
 from ._estimates import Estimates
 from ._hidden_markov import HiddenMarkovCounter, LiveCount, Room, train_hidden_markov
-from ._learned import LearnedCounter, LearnedLiveCount, LogisticCounter, TreesCounter, load_logistic, train_logistic, train_trees
+from ._learned import LearnedCounter, LearnedLiveCount, LogisticCounter, TreesCounter, parse_logistic, train_logistic, train_trees
 from ._readings import Day, read_dataset
 
 __all__ = [
@@ -64,4 +64,6 @@ def train(dataset: PathOr | Iterable[Day], step_s: float = 30.0, model: str = "h
 
 def load(file: PathOr) -> Counter:
     """A counter that save(), `pirsim calibrate` or another program wrote. Raises FileError and InputError."""
-    return load_logistic(file) or HiddenMarkovCounter._of(_core.read_counter(as_path(file)))
+    name = as_path(file)
+    saved = _core.read_counter_bytes(name)
+    return parse_logistic(saved, name) or HiddenMarkovCounter._of(_core.parse_counter(saved, name))

@@ -85,7 +85,8 @@ def calibrate(pool: PathOr, log: LogLike, *, step_s: float = 30.0, map: MapLike 
     step_s: seconds of a reading. settings: modes, shrinkage, iterations and weight_power. Raises InputError and FileError.
     """
     chosen = settings_of(step_s, **settings)
-    parts = _core.calibrate(as_path(pool), readings_of(log, step_s, map).core, chosen, as_threads(threads))
+    readings = readings_of(log, step_s, map)
+    parts = _core.calibrate(as_path(pool), readings.core, readings.traits, chosen, as_threads(threads))
     parts["counter"] = HiddenMarkovCounter._of(parts["counter"])
     parts["rooms"] = [WeighedRoom(*room) for room in parts["rooms"]]
     parts["statistics"] = [Statistic(*one) for one in parts["statistics"]]

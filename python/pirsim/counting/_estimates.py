@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 def middle_count(probabilities: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
     """[...] of [..., count]: the least count that as many people or fewer have at least even odds of. It makes the
-    absolute error least."""
-    return np.argmax(np.cumsum(probabilities, axis=-1) >= 0.5 - 1e-9, axis=-1)
+    absolute error least. -1 where the probabilities are NaN."""
+    middle = np.argmax(np.cumsum(probabilities, axis=-1) >= 0.5 - 1e-9, axis=-1)
+    return np.where(np.isnan(probabilities[..., 0]), -1, middle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +28,10 @@ class Estimates:
     """How many people were there, reading by reading."""
 
     people: npt.NDArray[np.int64]
-    """[reading] the middle of the distribution, which makes the absolute error least."""
+    """[reading] the middle of the distribution, which makes the absolute error least; -1 where nothing has been known
+    for five minutes."""
     probabilities: npt.NDArray[np.float64]
-    """[reading, count]"""
+    """[reading, count]; NaN there."""
     time: npt.NDArray[Any]
     """[reading] its end: local time (datetime64[us]), or seconds for a log that tells no time of day."""
     expected_error: tuple[float, float] | None
@@ -38,20 +40,23 @@ class Estimates:
 
     def __repr__(self) -> str:
         n, n_counts = self.probabilities.shape
+        told = self.people[self.people >= 0]
         return (f"<pirsim.counting.Estimates: {n} readings, 0 to {n_counts - 1} people, "
-                f"{self.people.mean() if n else 0:.2f} on average>")
+                f"{told.mean() if len(told) else 0:.2f} on average"
+                + (f", {n - len(told)} unknown>" if len(told) < n else ">"))
 
     @property
     def mean(self) -> npt.NDArray[np.float64]:
-        """[reading] mean of the distribution."""
+        """[reading] mean of the distribution, NaN where nobody knows."""
         return self.probabilities @ np.arange(self.probabilities.shape[1])
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A row a reading, with the columns of write_csv()."""
+        """A row a reading, with the columns of write_csv(); what is unknown is missing."""
         import pandas as pd
 
         time = "time" if self.time.dtype.kind == "M" else "time_s"
-        columns: dict[str, Any] = {time: self.time, "people": self.people, "mean": self.mean}
+        columns: dict[str, Any] = {time: self.time, "people": pd.arrays.IntegerArray(self.people.copy(), self.people < 0),
+                                   "mean": self.mean}
         columns.update((f"p{n}", column) for n, column in enumerate(self.probabilities.T))
         return pd.DataFrame(columns)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, Iterable, NamedTuple, NoReturn
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .._study import PathOr, as_count, as_path, as_threads
+from ..errors import InputWarning
 from ._estimates import Estimates, estimates_of, middle_count
 from ._readings import Day, LogLike, MapLike, as_day, as_motion, readings_of
 
@@ -37,15 +39,16 @@ class LiveCount:
         self._people: int | None = None
 
     def next(self, bits: npt.ArrayLike) -> npt.NDArray[np.float64]:
-        """[count] probabilities after one more reading. bits: [sensor] 0, 1, or 2 or NaN for unknown. Raises UsageError
-        for another number of sensors."""
-        probabilities: npt.NDArray[np.float64] = self._core.next(as_motion(np.atleast_2d(np.asarray(bits)))[0])
-        self._people = int(middle_count(probabilities))
+        """[count] probabilities after one more reading; NaN once nothing has been known for five minutes. bits: [sensor]
+        0, 1, or 2, NaN or masked for unknown. Raises UsageError for another number of sensors."""
+        probabilities: npt.NDArray[np.float64] = self._core.next(as_motion(np.ma.atleast_2d(bits))[0])
+        people = int(middle_count(probabilities))
+        self._people = people if people >= 0 else None
         return probabilities
 
     @property
     def people(self) -> int | None:
-        """The estimate for the last reading; None before the first."""
+        """The estimate for the last reading; None before the first, and where nobody knows."""
         return self._people
 
 
@@ -79,6 +82,16 @@ class HiddenMarkovCounter:
     def n_sensors(self) -> int:
         """That a log must have."""
         return self._handle.n_sensors
+
+    @property
+    def sensors(self) -> tuple[str, ...] | None:
+        """Names in the log that it was calibrated by, which a log must have; None: any, as many."""
+        return tuple(self._handle.sensors) or None
+
+    @property
+    def holds_s(self) -> tuple[float | None, ...] | None:
+        """[sensor] seconds for which they held motion there; None: that log, or the counter's file, doesn't tell."""
+        return tuple(self._handle.holds_s) or None
 
     @property
     def n_counts(self) -> int:
@@ -117,12 +130,16 @@ class HiddenMarkovCounter:
         """How many people were there.
 
         log: a file as `pirsim log` reads it, several that are parts of one, a pirsim.Log with windows of `step_s`, or an
-        array [reading, sensor] of 0, 1, and 2 or NaN for unknown. smoothed: each reading by those after it as well;
+        array [reading, sensor] of 0, 1, and 2, NaN or masked for unknown. smoothed: each reading by those after it as well;
         False: by those before it alone, as it could have been told then. map: what a file's columns mean, as of
-        read_log(). Raises InputError if the log hasn't as many sensors as the counter.
+        read_log(). Raises InputError for a log of other sensors, and ValueError if its readings are further apart than
+        `step_s`; sensors that hold motion for another time are an InputWarning.
         """
         readings = readings_of(log, self.step_s, map)
-        return estimates_of(readings, _core.estimate(self._handle, readings.core, smoothed), self.expected_error)
+        probabilities, remarks = _core.estimate(self._handle, readings.core, readings.traits, smoothed)
+        for remark in remarks:
+            warnings.warn(remark, InputWarning, stacklevel=2)
+        return estimates_of(readings, probabilities, self.expected_error)
 
     def live(self) -> LiveCount:
         """Counts reading by reading, as they come: what estimate(..., smoothed=False) gives."""

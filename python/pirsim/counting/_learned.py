@@ -28,7 +28,7 @@ class LearnedCounter:
     expected_error = None
 
     def __init__(self, step_s: float, prior: Array) -> None:
-        """prior: [count] share of each in what was learnt from, for readings of which nothing is known."""
+        """prior: [count] share of each in what was learnt from."""
         self.step_s = step_s
         self.prior = prior
 
@@ -46,8 +46,8 @@ class LearnedCounter:
 
     def _probabilities(self, motion: npt.NDArray[np.uint8]) -> Array:
         rows = features(motion, windows_of(self.step_s))
-        known = ~np.isnan(rows).any(axis=1)
-        out = np.tile(self.prior, (len(rows), 1))
+        known = (_core.told_readings(motion, self.step_s) == 1) & ~np.isnan(rows).any(axis=1)
+        out = np.full((len(rows), self.n_counts), np.nan)
         if known.any():
             out[known] = self._of_features(rows[known])
         return out
@@ -74,15 +74,16 @@ class LearnedLiveCount:
         self._counter = counter
         self._motion: npt.NDArray[np.uint8] | None = None
         self.people: int | None = None
-        """The estimate for the last reading; None before the first."""
+        """The estimate for the last reading; None before the first, and where nobody knows."""
 
     def next(self, bits: npt.ArrayLike) -> Array:
-        """[count] probabilities after one more reading. bits: [sensor] 0, 1, or 2 or NaN for unknown."""
-        row = as_motion(np.atleast_2d(np.asarray(bits)))
+        """[count] probabilities after one more reading, as of HiddenMarkovCounter's LiveCount."""
+        row = as_motion(np.ma.atleast_2d(bits))
         motion = row if self._motion is None else np.vstack([self._motion, row])
         self._motion = motion[-max(windows_of(self._counter.step_s)) - 1:]
         probabilities: Array = self._counter._probabilities(self._motion)[-1]
-        self.people = int(middle_count(probabilities))
+        people = int(middle_count(probabilities))
+        self.people = people if people >= 0 else None
         return probabilities
 
 
@@ -223,12 +224,11 @@ def _from_json(saved: dict[str, Any]) -> LogisticCounter:
     return counter
 
 
-def load_logistic(file: PathOr) -> LogisticCounter | None:
-    """None: the file holds none. Raises InputError for one that isn't as it should be."""
+def parse_logistic(text: bytes, name: str) -> LogisticCounter | None:
+    """None: the text holds none. Raises InputError for one that isn't as it should be."""
     try:
-        with open(file, encoding="utf-8") as text:
-            saved = json.load(text)
-    except (OSError, ValueError, RecursionError):
+        saved = json.loads(text)
+    except (ValueError, RecursionError):
         return None  # whoever reads the other counters tells what is wrong
     if not isinstance(saved, dict) or saved.get("model") != LogisticCounter.model:
         return None
@@ -237,4 +237,4 @@ def load_logistic(file: PathOr) -> LogisticCounter | None:
     except (KeyError, TypeError, ValueError) as fault:
         what = f"{fault} is missing" if isinstance(fault, KeyError) else str(fault)
         raise InputError(ErrorCode.INPUT, [Diagnostic(
-            "error", os.fspath(file), 0, 0, f"isn't a logistic counter as it should be: {what}")]) from None
+            "error", name, 0, 0, f"isn't a logistic counter as it should be: {what}")]) from None

@@ -37,8 +37,10 @@ class Day(NamedTuple):
 
 
 def as_motion(bits: npt.ArrayLike) -> Motion:
-    """[reading, sensor]; a list of numbers is that of one sensor. Raises ValueError."""
+    """[reading, sensor]; a list of numbers is that of one sensor. What is masked is unknown. Raises ValueError."""
     values = np.asarray(bits)
+    if np.ma.isMaskedArray(bits):
+        values = np.where(np.ma.getmaskarray(bits), UNKNOWN, values)
     if values.dtype.kind not in "bui":
         values = values.astype(float)  # raises ValueError for what isn't a number
         values = np.where(np.isnan(values), UNKNOWN, values)
@@ -56,7 +58,7 @@ def as_motion(bits: npt.ArrayLike) -> Motion:
 
 def as_day(day: Day) -> Day:
     """With arrays as the module takes them. Raises ValueError."""
-    motion, people = as_motion(day.motion), np.asarray(day.people)
+    motion, people = as_motion(day.motion), np.ma.filled(day.people, -1)
     if people.dtype.kind == "b" or people.shape != (len(motion),) or not np.array_equal(people, np.floor(people)):
         raise ValueError(f"room {day.room}: expected a whole number of people for each of {len(motion)} readings")
     if len(people) and not (-1 <= people.min() and people.max() <= MOST_PEOPLE):
@@ -87,6 +89,8 @@ class Readings(NamedTuple):
     end_us: npt.NDArray[np.int64]
     """[reading] local time, or since the log's zero."""
     has_clock: bool
+    traits: _core.LogTraits
+    """What a log tells of itself; of an array nothing."""
 
 
 def _is_files(log: Any) -> bool:
@@ -95,7 +99,9 @@ def _is_files(log: Any) -> bool:
 
 
 def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
-    """Of a log in any form. Raises ValueError for a Log with windows of another length."""
+    """Of a log in any form. Raises ValueError for a Log with windows of another length, and for one whose readings are
+    further apart."""
+    traits = _core.LogTraits(0.0, [], [])
     if _is_files(log):
         log = read_log(log, map, window_s=step_s)  # type: ignore[arg-type]
     elif map is not None:
@@ -111,4 +117,9 @@ def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
         motion, end_us = as_motion(log.motion), log.time.astype("datetime64[us]").astype(np.int64)
         names, has_clock = list(log.sensors), not log.is_elapsed
         people = log.people if log.people_means == "count" else None
-    return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock)
+        if log.interval_s > step_s * (1 + 1e-6):
+            raise ValueError(f"the log has a reading every {log.interval_s:g} s and the counter one every {step_s:g} s: "
+                             "it can't tell what was between")
+        traits = _core.LogTraits(log.interval_s, names, [one.hold_s for one in log.facts])
+    return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock,
+                    traits)

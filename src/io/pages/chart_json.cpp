@@ -102,7 +102,8 @@ Json to_json(const SeriesChart& chart) {
   for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
   json["people"] = Json::array();
   for (const auto& count : chart.people) {
-    Json& one = json["people"].emplace_back(Json{{"from_s", count.from_s}, {"n", count.people}});
+    Json& one = json["people"].emplace_back(Json{{"from_s", count.from_s}, {"n", nullptr}});
+    if (count.people) one["n"] = *count.people;
     if (count.likely) one["low"] = count.likely->low, one["high"] = count.likely->high;
   }
   json["phases"] = Json::array();

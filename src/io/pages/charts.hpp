@@ -89,7 +89,7 @@ struct SeriesChart {
   double end_s = 0.0;
   struct Count {
     double from_s = 0.0;
-    int people = 0;                    ///< until the next one
+    std::optional<int> people{};       ///< until the next one; none: unknown, and nothing is drawn
     std::optional<Interval> likely{};  ///< drawn pale behind it
   };
   std::vector<Row> rows;

@@ -201,7 +201,7 @@
     // The number of people has a strip of its own above the sensors.
     const strip = chart.people.length > 0 ? 56 : 0, gap = strip > 0 ? 10 : 0;
     const people = chart.people.map((p, i) => ({ x: p.from_s, n: p.n, low: p.low ?? p.n, high: p.high ?? p.n,
-      x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s }));
+      x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s })).filter((p) => p.n !== null);
     const most = Math.max(1, ...people.map((p) => p.high));
     const rows = 26 * chart.rows.length + 8, height = strip + gap + rows;
     const begin = chart.first_clock ? Math.ceil(Date.parse(chart.first_clock + "Z") / 1000 - chart.window_s - 1e-6) : 0;

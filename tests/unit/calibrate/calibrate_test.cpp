@@ -1,6 +1,9 @@
 // Rooms weighed by a log: statistics by hand, the check's level, what moves, hours of days, the recipe that is made.
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <random>
+#include <sstream>
 
 #include "calibrate/errors.hpp"
 #include "calibrate/motion_statistics.hpp"
@@ -259,12 +262,87 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   // Of a day that has only some of the hours nothing is compared.
   const LogDays nights = days_of(rows, {-4.0, 10.0});
   CHECK(nights.whole.empty());
-  CHECK(nights.n_partial == 2);
-  CHECK(days.n_partial == 0);
-  CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, 1}), contains("no verdict"));
-  CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, 0}) == "2 days, from 7:00 to 10:00");
-  CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, 1}) ==
-        "1 of 2 days, from 7:00 to 10:00; of the others it has less than nine tenths of these hours");
+  CHECK(nights.partial == std::vector<std::string>{"1970-01-02", "1970-01-03"});
+  CHECK(days.partial.empty());
+  CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, {"2026-03-02"}}), contains("no verdict"));
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, {}}) == "2 days, from 7:00 to 10:00");
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, {"2026-03-02"}}) ==
+        "1 of 2 days, from 7:00 to 10:00: on 2026-03-02 a sensor is known for less than nine tenths of these hours");
+}
+
+TEST_CASE("A day of which a sensor is known for less than nine tenths isn't compared") {
+  LogRows rows;
+  rows.sensors = {"a", "b"};
+  rows.window_s = 360.0;  // ten an hour
+  for (int i = 0; i < 3 * 240; ++i) {
+    rows.begin.push_back({i * std::int64_t{360'000'000}, 0});
+    const int day = i / 240, reading = i % 240 - 80;                 // after 8:00
+    rows.motion.push_back(reading < 0 ? counting::unknown_bit : 0);  // other hours don't count
+    rows.motion.push_back(reading >= 0 && reading < (day == 1 ? 3 : 2) ? counting::unknown_bit : 0);
+  }
+  const LogDays days = days_of(rows, {8.0, 10.0});  // twenty readings, of which two or three are unknown
+  CHECK(days.whole.size() == 2);
+  CHECK(days.partial == std::vector<std::string>{"1970-01-02"});
+  rows.clock = LogClock::elapsed;  // then all of it counts, and a third is unknown
+  CHECK(days_of(rows, {8.0, 10.0}).whole.empty());
+}
+
+TEST_CASE("A counter refuses a log that it isn't for, and tells of sensors that hold motion for another time") {
+  std::mt19937 random(8);
+  const PoolRoom room = room_of(random, 1, 0.3);
+  counting::Counter counter = counting::train(std::vector{room.labelled}, {});
+  LogRows rows;
+  rows.sensors = {"desk", "hall"};
+  rows.window_s = 30.0;
+  const Stretch& day = room.labelled.days[0];
+  rows.motion = day.motion;
+  for (std::size_t i = 0; i < day.n_readings(); ++i)
+    rows.begin.push_back({static_cast<std::int64_t>(i) * 30'000'000, 0});
+  LogTraits log{0.0, rows.sensors, {10.0, std::nullopt}};
+  const auto counts = [&] { return count_log(counter, rows, log, counting::Pass::forward); };
+  CHECK(counts().remarks.empty());  // a counter of an older file takes any two
+  remember({0.0, {"hall", "desk"}, {10.0, 9.5}}, counter);
+  CHECK(counts().remarks.empty());
+  log.interval_s = 30.0;
+  CHECK(counts().remarks.empty());
+  log.interval_s = 300.0;
+  CHECK_THROWS_WITH(counts(), contains("a reading every 300 s") && contains("--step 300"));
+  log.interval_s = 0.0;
+  log.holds_s[0] = 90.0;
+  REQUIRE(counts().remarks.size() == 1);
+  CHECK_THAT(counts().remarks[0], contains("'desk' holds motion for 90.0 s in this log, and for 9.5 s"));
+  counter.sensors = {"hall", "door"};
+  CHECK_THROWS_WITH(counts(), contains("2 sensors (hall, door), and the log has 2: desk, hall") && contains("--map"));
+  log.sensors.clear();  // arrays have no names
+  log.holds_s.clear();
+  CHECK_NOTHROW(counts());
+  counter.n_sensors = 3;
+  CHECK_THROWS_AS(counts(), Error);
+}
+
+TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
+  LogCounts counts;
+  counts.rows.sensors = {"a"};
+  counts.rows.window_s = 1800.0;
+  counts.rows.clock = LogClock::elapsed;
+  counts.rows.people = {1, 1, 1};
+  for (int i = 0; i < 3; ++i) counts.rows.begin.push_back({i * std::int64_t{1'800'000'000}, 0});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  counts.estimates = {2, {0.1, 0.9, nan, nan, 1.0, 0.0}};
+  std::ostringstream text;
+  write_counts(text, counts);
+  CHECK(text.str() == "time_s,people,mean,p0,p1\n1800,1,0.90,0.100,0.900\n3600,,,,\n5400,0,0.00,1.000,0.000\n");
+  CHECK(how_sure(counts) ==
+        "Somebody is there for 0.5 h; the number is told with 80 % or more for 0.5 h of them. For 0.5 h nothing is "
+        "known, and no number is told.");
+  REQUIRE(error_of(counts));
+  CHECK(error_of(counts)->readings == 2);
+  CHECK(error_of(counts)->mean == Approx(0.5));
+  const TemporaryFolder folder;
+  write_counts_page(folder.path() / "page.html", counts, "log", "made by a test");
+  std::stringstream page;
+  page << std::ifstream(folder.path() / "page.html").rdbuf();
+  CHECK_THAT(page.str(), contains("\"n\":null") && contains("unknown, h"));
 }
 
 TEST_CASE("Counts say how far off they are, and for how long they are sure") {

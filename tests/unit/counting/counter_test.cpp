@@ -175,6 +175,55 @@ TEST_CASE("Counting live gives what counting forward gives, and rooms mix by wei
   CHECK_THROWS_AS(live.next(std::vector<std::uint8_t>{1}), Error);
 }
 
+TEST_CASE("Nobody is counted where nothing has been known for five minutes, nor live") {
+  std::mt19937 random(10);
+  const Counter counter = random_counter(random, 2);
+  constexpr std::size_t n = 90;
+  Stretch stretch = random_stretch(random, n, 2);
+  const auto is_unknown = [](std::size_t i) { return i < 15 || (i >= 30 && i < 61) || (i >= 70 && i < 79); };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_unknown(i)) stretch.motion[2 * i] = stretch.motion[2 * i + 1] = unknown_bit;
+  }
+  const Estimates forward = estimate(counter, stretch, Pass::forward),
+                  smoothed = estimate(counter, stretch, Pass::smoothed);
+  LiveCount live(counter);
+  for (std::size_t i = 0; i < n; ++i) {
+    bool before = false, after = false;  // ten readings of 30 s are five minutes
+    for (std::size_t k = 0; k < n; ++k) {
+      before = before || (!is_unknown(k) && k <= i && i - k <= 10);
+      after = after || (!is_unknown(k) && k >= i && k - i <= 10);
+    }
+    INFO(i);
+    CHECK(forward.is_told(i) == before);
+    CHECK(smoothed.is_told(i) == (before || after));
+    CHECK((smoothed.count(i) == unknown_count) == !(before || after));
+    const std::vector<double> now = live.next(std::span(stretch.motion).subspan(2 * i, 2));
+    CHECK(std::isnan(now[0]) == !before);
+    if (before) CHECK(now[0] == Approx(forward.probabilities[2 * i]).epsilon(1e-12));
+  }
+  CHECK(smoothed.count(45) == unknown_count);  // in the middle of the longest, for both to be tried
+  CHECK_FALSE(forward.is_told(44));
+}
+
+TEST_CASE("A reading that is as good as impossible, again and again, leaves numbers and their sum 1") {
+  Counter counter;
+  counter.settings.modes = 1;
+  counter.n_counts = 2;
+  counter.moves = {1, 0, 0, 1};  // whoever is there stays
+  counter.rooms = {{1, 1.0, {0.5, 0.5}, {1.0 - 1e-100, 1e-100, 0.1, 0.9}}};
+  const Stretch busy{1, std::vector<std::uint8_t>(50, 1)};
+  const auto believed = [&](std::vector<double> first, std::size_t reading) {
+    counter.rooms[0].first = std::move(first);
+    return estimate(counter, busy, Pass::smoothed).probabilities[2 * reading + 1];
+  };
+  CHECK(believed({0.5, 0.5}, 0) == 1.0);
+  CHECK(believed({1.0, 0.0}, 0) == 0.0);  // nobody else was ever possible
+  CHECK(believed({1.0, 0.0}, 49) == 0.0);
+  // Moves that hardly ever happen, to what the motion then proves.
+  counter.moves = {1.0, 0.0, 1e-12, 1.0 - 1e-12};
+  CHECK(believed({1.0, 1e-300}, 0) == Approx(1.0));
+}
+
 TEST_CASE("Counts that a log knows are held to, and say more of a room than motion alone") {
   std::mt19937 random(3);
   const Counter counter = random_counter(random, 1);
@@ -292,6 +341,13 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   CHECK(read.rooms[1].emissions == counter.rooms[1].emissions);
   CHECK(read.rooms[1].first == counter.rooms[1].first);
   CHECK(read.expected_error == counter.expected_error);
+  CHECK(read.sensors.empty());  // as of older files
+  counter.sensors = {"hall", "desk"};
+  counter.holds_s = {12.5, std::nullopt};
+  write_counter(folder.path() / "named.json", counter);
+  const Counter named = read_counter(folder.path() / "named.json");
+  CHECK(named.sensors == counter.sensors);
+  CHECK(named.holds_s == counter.holds_s);
   const auto refused = [&](Counter spoilt) {
     write_counter(folder.path() / "spoilt.json", spoilt);
     CHECK_THROWS_AS(read_counter(folder.path() / "spoilt.json"), Error);
@@ -304,6 +360,17 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   refused(spoilt);
   spoilt = counter;
   spoilt.rooms[0].weight = 2.0;
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.rooms[0].emissions = {5e-324, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.sensors = {"hall", "hall"};
+  refused(spoilt);
+  spoilt.sensors = {"hall"};
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.holds_s = {-1.0, 2.0};
   refused(spoilt);
 }
 
