@@ -199,15 +199,19 @@ nb::dict told(calibrate::Calibration&& made) {
 nb::dict calibrated(const std::string& pool, const LogRows& log, const calibrate::LogTraits& traits,
                     const Settings& settings, unsigned threads) {
   calibrate::Calibration made;
+  calibrate::LogDays days;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
     const Interval hours = calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
+    days = calibrate::days_of(log, hours);
     auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
     made = calibrate::Pool(std::move(rooms), settings, threads)
-               .calibrate(std::vector{calibrate::whole_log(log)}, calibrate::days_of(log, hours).whole);
+               .calibrate(std::vector{calibrate::whole_log(log)}, days.whole);
     calibrate::remember(traits, made.counter);
   });
-  return told(std::move(made));
+  nb::dict result = told(std::move(made));
+  result["partial_days"] = days.partial;
+  return result;
 }
 
 // -- what the module has ---------------------------------------------------------------------------------------------

@@ -211,7 +211,7 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   made.p = unlike_share(known.rows, of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
   if (made.verdict == Verdict::none_like_it)
-    made.counter.warning = "No room that this counter comes from makes such a log: don't rely on its counts.";
+    made.counter.warning = "Hardly a room that this counter comes from makes such a log: don't rely on its counts.";
   made.statistics = compared(rooms, known, of_log, made.counter);
   return made;
 }

@@ -154,26 +154,26 @@ std::string how_much_it_told(const Calibration& calibration) {
 
 std::string finding(const Calibration& calibration) {
   const std::optional<Interval>& expected = calibration.counter.expected_error;
-  const std::string error =
-      expected ? " Expect an error of " + fixed(calibration.mean_error, 2) + " people (" + range(*expected) + ")." : "";
+  const std::string error = expected ? " If it is one, expect an error of " + fixed(calibration.mean_error, 2) +
+                                           " people (" + range(*expected) + ")."
+                                     : "";
   switch (calibration.verdict) {
     case Verdict::like_these:
-      return "Rooms of this recipe make such a log." + error;
+      return "Rooms of this recipe make such logs, so yours may be one of them." + error;
     case Verdict::none_like_it: {
       std::string outside;
       for (const Statistic& one : calibration.statistics) {
         if (one.p <= verdict_level) outside += (outside.empty() ? "" : "; ") + one.name;
       }
-      return "No room of this recipe makes such a log" +
+      return "Hardly a room of this recipe makes such a log" +
              (outside.empty() ? " (by its numbers together)" : ": " + outside) +
              ". Neither counts nor errors can be relied on.";
     }
     case Verdict::too_little_told:
       break;
   }
-  return "Too little is told in the hours that the recipe simulates to say whether its rooms are like yours: a day "
-         "counts "
-         "if the log has nine tenths of them, with some motion." +
+  return "Too little is told in the hours that the recipe simulates to say whether yours is one of its rooms: a day "
+         "counts if nine tenths of them are known, with some motion." +
          error;
 }
 

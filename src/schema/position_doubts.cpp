@@ -99,13 +99,13 @@ class Doubts {
   [[nodiscard]] std::optional<std::string> too_fast() const {
     if (fastest_.track == nullptr || fastest_.speed() <= fastest_m_s) return std::nullopt;
     return "'" + fastest_.track->person + "' goes " + fixed(fastest_.metres, 2) + " m in " +
-           shortest_number(fastest_.seconds) + " s, until second " + shortest_number(fastest_.at_s) + ": " +
+           fixed(fastest_.seconds, 2) + " s, until second " + fixed(fastest_.at_s, 1) + ": " +
            fixed(fastest_.speed(), 0) + " m/s. Are places metres and times seconds, and is it one person throughout?";
   }
 
   /// Frames, as 0, 1, 2, ... of a camera, are far longer when they are taken for seconds.
   [[nodiscard]] std::optional<std::string> too_slow() const {
-    const bool is_walk = farthest_m_ >= walk_m && fastest_.speed() < slowest_walk_m_s && longest_step_s_ <= 1.0;
+    const bool is_walk = farthest_m_ >= walk_m && fastest_.speed() < slowest_walk_m_s && longest_step_s_ <= 1.5;
     if (!is_walk) return std::nullopt;
     return "people cross " + fixed(farthest_m_, 1) + " m of the room, and nobody is faster than " +
            fixed(fastest_.speed(), 2) + " m/s: the times look like frames rather than seconds";

@@ -48,7 +48,7 @@ std::vector<int> surroundings_of(const io::ModelParts& model) {
   std::vector<Body> bodies;
   for (const auto& [node, own] : meshes) bodies.push_back({node, extent_of(own)});
   std::ranges::stable_sort(bodies, std::greater{}, &Body::longest);
-  // rests[k]: of all from the k-th on
+  // Of all from the k-th on
   std::vector<Extent> rests(bodies.size());
   for (std::size_t k = bodies.size(); k-- > 0;) {
     rests[k] = bodies[k].extent;
@@ -62,7 +62,6 @@ std::vector<int> surroundings_of(const io::ModelParts& model) {
       continue;
     nodes.clear();
     for (std::size_t k = 0; k < n; ++k) nodes.push_back(bodies[k].node);
-    break;
   }
   return nodes;
 }

@@ -70,6 +70,8 @@ class Calibration:
     """To expect, in people; `counter.expected_error` is its interval."""
     mean_error_alike: float
     """The same if all rooms weighed alike."""
+    partial_days: list[str]
+    """Dates that weren't compared, since a sensor is known for less than nine tenths of the recipe's hours."""
     rooms: list[WeighedRoom] = field(repr=False)
     statistics: list[Statistic] = field(repr=False)
     parameters: list[ParameterRange] = field(repr=False)

@@ -61,7 +61,7 @@ TEST_CASE("Positions are doubted for what is wrong with them, and not when they 
   CHECK_THAT(elsewhere, contains("nobody is ever over the floor: they span x 501.50 to 508.50") &&
                             contains("the floor x 1.00 to 9.00") && !contains("look like"));
   CHECK_THAT(doubt_of(walkers([](Vec2 p) { return Vec2(1, 0.5) + 0.01 * p; })),
-             contains("all positions lie within 0.07 m x 0.03 m of a floor of 8.00 m x 6.00 m"));
+             contains("all positions lie within 0.07 m x 0.04 m of a floor of 8.00 m x 6.00 m"));
 }
 
 TEST_CASE("Steps that nobody can take are doubted, and walks that take for ever") {
@@ -69,7 +69,7 @@ TEST_CASE("Steps that nobody can take are doubted, and walks that take for ever"
   CHECK_THAT(doubt_of(walkers([](Vec2 p) { return p; }, 0.01)), contains("m/s"));
   ScriptSpec jump = walkers([](Vec2 p) { return p; });
   jump.trials[0].occupancy->positions->tracks[1].points[300].x = 1.1;
-  CHECK_THAT(doubt_of(jump), contains("'B' goes") && contains("m in 0.1 s, until second 30"));
+  CHECK_THAT(doubt_of(jump), contains("'B' goes") && contains("m in 0.10 s, until second 30.0"));
   // Readings a minute apart tell no walk, and somebody who sits doesn't walk.
   ScriptSpec minutes = walkers([](Vec2 p) { return p; });
   for (TrackSpec& track : minutes.trials[0].occupancy->positions->tracks) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <set>
 
 #include "schema/check_specs.hpp"
 #include "support/catch.hpp"
@@ -207,7 +208,7 @@ TEST_CASE("the floor of a model is that of its rooms, whatever ground it stands 
     CHECK(found.frame.unit == "m");
     CHECK(found.frame.up == 'y');
     CHECK(found.floor_m == Approx(0.0).margin(0.01));
-    CHECK(found.around == around);
+    CHECK(std::set(found.around.begin(), found.around.end()) == std::set(around.begin(), around.end()));
     CHECK(found.seats.size() == expected.seats.size());
     REQUIRE(found.areas.size() == expected.areas.size());
     for (std::size_t i = 0; i < found.areas.size(); ++i)
