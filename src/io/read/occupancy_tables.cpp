@@ -4,15 +4,17 @@
 
 #include "core/text.hpp"
 #include "io/read/yaml_map.hpp"
+#include "schema/columns.hpp"
 #include "schema/fields.hpp"
 #include "schema/limits.hpp"
 
 namespace pirsim::io {
 
 void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults) {
-  for (const std::string_view name : {"replicate", "trial", "room", "day"}) {
+  for (const std::string_view name :
+       {std::string_view("replicate"), std::string_view("trial"), room_column.name, day_column.name}) {
     const auto column = table.column(name);
-    if (!column || (name == "day" && time.is_clock())) continue;  // a clock goes on from day to day
+    if (!column || (name == day_column.name && time.is_clock())) continue;  // a clock goes on from day to day
     for (std::size_t row = 1; row < table.n_rows(); ++row) {
       if (table.text(row, *column) == table.text(0, *column)) continue;
       faults.add("runs", table.where(row, *column),

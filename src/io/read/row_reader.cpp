@@ -31,7 +31,8 @@ bool is_slip_of(std::string_view name, std::string_view meant) {
   if (b.size() < shortest || a.empty() || (a.back() >= '0' && a.back() <= '9')) return false;
   const auto [in_a, in_b] = std::ranges::mismatch(a, b);
   const std::string_view rest_a(in_a, a.end()), rest_b(in_b, b.end());
-  return rest_a.substr(std::min<std::size_t>(1, rest_a.size())) == rest_b || (!rest_b.empty() && rest_a == rest_b.substr(1)) ||
+  return rest_a.substr(std::min<std::size_t>(1, rest_a.size())) == rest_b ||
+         (!rest_b.empty() && rest_a == rest_b.substr(1)) ||
          (!rest_a.empty() && !rest_b.empty() && rest_a.substr(1) == rest_b.substr(1)) ||
          (rest_a.size() > 1 && rest_b.size() > 1 && rest_a[0] == rest_b[1] && rest_a[1] == rest_b[0] &&
           rest_a.substr(2) == rest_b.substr(2));
@@ -43,14 +44,33 @@ std::string_view alias_of(std::string_view name) {
   return known == columns_of<Sample>().end() ? std::string_view() : known->alias;
 }
 
-constexpr std::array<std::string_view, RowFormat::n_columns> column_names_of_format{
-    "replicate", "room", "trial", "day", "time_s", "time", "phase", "people"};
+std::string_view name_of(RowFormat::Column column) {
+  switch (column) {
+    case RowFormat::replicate:
+      return "replicate";
+    case RowFormat::room:
+      return room_column.name;
+    case RowFormat::trial:
+      return "trial";
+    case RowFormat::day:
+      return day_column.name;
+    case RowFormat::time_s:
+      return "time_s";
+    case RowFormat::time:
+      return "time";
+    case RowFormat::phase:
+      return "phase";
+    default:
+      return "people";
+  }
+}
 
 }  // namespace
 
 // ------------------------------------------------------------------------------------------------------------- a line
 
-RowFormat::RowFormat(std::string_view header, const Where& where) : file_(where.file), line_(header), line_number_(where.line) {
+RowFormat::RowFormat(std::string_view header, const Where& where)
+    : file_(where.file), line_(header), line_number_(where.line) {
   RepeatedFaults unclosed;
   Diagnostics faults;
   if (!split(unclosed)) unclosed.tell(faults);
@@ -86,7 +106,7 @@ void RowFormat::name_columns(const Where& header) {
     }
   }
   for (std::size_t column = 0; column < n_columns; ++column) {
-    const std::string_view name = column_names_of_format[column];
+    const std::string_view name = name_of(static_cast<Column>(column));
     const auto named = field_of(name), by_alias = field_of(alias_of(name));
     if (named && by_alias) {
       faults.error(place(*by_alias), "columns '" + std::string(name) + "' and '" + names_[*by_alias] +
@@ -107,7 +127,7 @@ void RowFormat::name_columns(const Where& header) {
 void RowFormat::refuse_slips(Diagnostics& faults) const {
   for (const std::size_t i : sensors_) {
     for (std::size_t column = 0; column < n_columns; ++column) {
-      const std::string_view name = column_names_of_format[column];
+      const std::string_view name = name_of(static_cast<Column>(column));
       if (at_[column] || !is_slip_of(names_[i], name)) continue;
       faults.error(place(i), "unknown column '" + names_[i] + "' (did you mean '" + std::string(name) + "'?)");
       break;
@@ -245,7 +265,8 @@ void RowFormat::mark_absent(Sample& row, RepeatedFaults& faults) {
 class RowReader::Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : name_(file.string()), file_(std::in_place, file) {}
-  Lines(std::string_view bytes, std::string name) : name_(std::move(name)), text_(text_from(std::string(bytes), name_)) {}
+  Lines(std::string_view bytes, std::string name)
+      : name_(std::move(name)), text_(text_from(std::string(bytes), name_)) {}
 
   [[nodiscard]] std::optional<std::string_view> next() {
     if (n_again_ < kept_.size()) return taken(kept_[n_again_++]);
@@ -317,7 +338,7 @@ namespace {
 template <typename Lines>
 RowFormat format_of(Lines& lines) {
   const auto header = lines.next();
-  if (!header) throw Error(ErrorCode::input, lines.where(), "the file is empty: expected a line with column names");
+  if (!header) throw Error(ErrorCode::input, lines.where(), "expected a line with column names");
   return {*header, lines.where()};
 }
 
@@ -397,22 +418,27 @@ std::int64_t RowReader::missing_in(double step_s) {
   constexpr double most = 1e8;  // assumed: three years of seconds
   constexpr int too_often = 2;
   const double steps = step_s / step_s_;
-  const auto are_apart = [](double seconds) { return "rows are " + csv_number(std::round(seconds * 1e6) / 1e6) + " s apart"; };
+  const auto are_apart = [](double seconds) {
+    return "rows are " + csv_number(std::round(seconds * 1e6) / 1e6) + " s apart";
+  };
   const auto where = [&] { return format_.where(RowFormat::time_s); };
   if (!(std::abs(steps - std::round(steps)) < 1e-3 && steps > 0.5)) {
     faults_.add("step", where(),
-                are_apart(step_s_) + ", and this one comes " + csv_number(std::round(step_s * 1e6) / 1e6) + " s after the one before");
+                are_apart(step_s_) + ", and this one comes " + csv_number(std::round(step_s * 1e6) / 1e6) +
+                    " s after the one before");
     return 0;
   }
   if (steps > most) {
-    faults_.add("gap", where(), "this row comes " + csv_number(std::round(steps)) + " rows after the one before: too long a gap");
+    faults_.add("gap", where(),
+                "this row comes " + csv_number(std::round(steps)) + " rows after the one before: too long a gap");
     return 0;
   }
   const std::int64_t n = std::llround(steps) - 1;
   n_alike_ = n > 0 && n == gap_ ? n_alike_ + 1 : 0;
   gap_ = n;
   if (n_alike_ >= too_often)
-    faults_.add("step", where(), are_apart(step_s_) + " at first and " + csv_number(step_s) + " s here: give rows of one length");
+    faults_.add("step", where(),
+                are_apart(step_s_) + " at first and " + csv_number(step_s) + " s here: give rows of one length");
   return n;
 }
 

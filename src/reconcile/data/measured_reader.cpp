@@ -321,8 +321,7 @@ bool MeasuredReader::check_times(const std::vector<Row>& rows) {
       return false;
     }
     if (std::abs(windows - std::round(windows)) < 1e-3) continue;
-    repeated_.add("off", rows[i].where,
-                  "this row isn't a whole number of windows after the one before");
+    repeated_.add("off", rows[i].where, "this row isn't a whole number of windows after the one before");
     return false;
   }
   return true;
@@ -351,9 +350,7 @@ std::size_t MeasuredReader::first_place(double time_s) const {
 /// Before gaps are filled, which a small file may have many of.
 void MeasuredReader::refuse_too_long(const std::vector<Row>& rows) {
   const double lasts_s = rows.back().time_s - rows.front().time_s;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorCode::input, rows.back().where, why);
-  };
+  const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::input, rows.back().where, why); };
   if (lasts_s > limits::measured_run_s) {
     refuse("this run lasts " + fixed(lasts_s, 0) + " s; a simulated one lasts " + fixed(limits::measured_run_s, 0) +
            " s at most");
