@@ -29,13 +29,12 @@ bool is_slip_of(std::string_view name, std::string_view meant) {
   if (a == b) return true;
   constexpr std::size_t shortest = 5;
   if (b.size() < shortest || a.empty() || (a.back() >= '0' && a.back() <= '9')) return false;
-  const auto [in_a, in_b] = std::ranges::mismatch(a, b);
-  const std::string_view rest_a(in_a, a.end()), rest_b(in_b, b.end());
-  return rest_a.substr(std::min<std::size_t>(1, rest_a.size())) == rest_b ||
-         (!rest_b.empty() && rest_a == rest_b.substr(1)) ||
-         (!rest_a.empty() && !rest_b.empty() && rest_a.substr(1) == rest_b.substr(1)) ||
-         (rest_a.size() > 1 && rest_b.size() > 1 && rest_a[0] == rest_b[1] && rest_a[1] == rest_b[0] &&
-          rest_a.substr(2) == rest_b.substr(2));
+  const auto begin = static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
+  const std::string_view in_a = std::string_view(a).substr(begin), in_b = std::string_view(b).substr(begin);
+  const auto behind = [](std::string_view text, std::size_t n) { return text.substr(std::min(n, text.size())); };
+  if (behind(in_a, 1) == in_b || in_a == behind(in_b, 1) || behind(in_a, 1) == behind(in_b, 1)) return true;
+  const bool is_swapped = in_a.size() > 1 && in_b.size() > 1 && in_a[0] == in_b[1] && in_a[1] == in_b[0];
+  return is_swapped && behind(in_a, 2) == behind(in_b, 2);
 }
 
 /// By the tables' descriptions.
@@ -261,7 +260,7 @@ void RowFormat::mark_absent(Sample& row, RepeatedFaults& faults) {
 
 // ---------------------------------------------------------------------------------------------------------- all lines
 
-/// Lines with data; one goes on where a quote is open at its end.
+/// Lines with data: comments stand before the header.
 class RowReader::Lines {
  public:
   explicit Lines(const std::filesystem::path& file) : name_(file.string()), file_(std::in_place, file) {}
@@ -313,20 +312,12 @@ class RowReader::Lines {
     while (found && (found->empty() || (!has_header_ && found->starts_with('#')))) found = line();
     has_header_ = true;
     number_ = n_lines_;
-    const auto is_open = [](std::string_view text) { return std::ranges::count(text, '"') % 2 != 0; };
-    if (!found || !is_open(*found)) return found;
-    joined_ = *found;
-    while (is_open(joined_)) {
-      found = line();
-      if (!found) break;
-      (joined_ += '\n') += *found;
-    }
-    return joined_;
+    return found;
   }
 
   std::string name_;
   std::optional<LineReader> file_;
-  std::string text_, joined_;
+  std::string text_;
   std::size_t at_ = 0, n_again_ = 0;
   int n_lines_ = 0, number_ = 0;
   bool has_header_ = false;

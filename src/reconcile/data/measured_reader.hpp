@@ -60,6 +60,7 @@ class MeasuredReader {
   io::RepeatedFaults repeated_;
   Measured measured_;
   bool tells_phases_ = false;  ///< that are counted
+  double step_s_ = 0.0;        ///< of the rows
   std::set<std::string> unknown_names_;
   std::map<std::size_t, std::set<int>> replicates_;  ///< of a trial
   std::size_t outside_ = 0;                          ///< rows
