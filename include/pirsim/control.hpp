@@ -150,8 +150,11 @@ class Control {
   ~Control();
   Control(Control&&) noexcept;
 
-  /// In order of time. A bit of 2 isn't known, people below 0 neither. A new replicate or trial begins in the dark.
-  /// day: what intervals are over; a run if it is empty.
+  /// The next row is of another run, whatever its replicate and trial.
+  void begin_run() noexcept;
+  /// In order of time. A bit of 2 isn't known, people of -1 neither; a light that goes by what the row's room hasn't
+  /// got (bits of 3, people of -2) isn't in that room. A new replicate or trial begins in the dark. day: what intervals
+  /// are over; a run if it is empty.
   LitRow add(const Sample& row, std::string_view day = {});
   [[nodiscard]] Costs finish() const;
 

@@ -160,8 +160,8 @@ struct RoomDayRows {
   int room = 0, day = 0;
   double window_s = 1.0;
   std::vector<std::string> sensors;  ///< that this room has
-  std::vector<std::uint8_t> motion;  ///< (rows x sensors)
-  std::vector<int> people;           ///< (rows)
+  std::vector<std::uint8_t> motion;  ///< (rows x sensors) 2: unknown
+  std::vector<int> people;           ///< (rows) -1: unknown
 };
 
 /// Days of one part of a finished dataset, room by room; those without rows are left out. Threads change no byte.

@@ -74,12 +74,19 @@ def control(result: Result, rule: str | os.PathLike[str] | Mapping[str, Any] | N
     window_s = float(result.time[0]) if len(result.time) else 1.0
     clock = [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist()
     table, lights, rows, remarks = _core.control_light(
-        file, text, list(result.sensors), list(result.areas), list(result.doors), window_s, run.astype(np.int32),
-        np.ascontiguousarray(result.time[second], dtype=np.float64), clock,
-        result.people[run, second].astype(np.int32),
-        np.ascontiguousarray(result.people_of_areas[run, second], dtype=np.int32),
-        np.ascontiguousarray(result.door_open[run, second], dtype=np.uint8),
-        np.ascontiguousarray(result.bits[run, second], dtype=np.uint8))
+        file=file,
+        text=text,
+        sensors=list(result.sensors),
+        areas=list(result.areas),
+        doors=list(result.doors),
+        window_s=window_s,
+        run=run.astype(np.int32),
+        time_s=np.ascontiguousarray(result.time[second], dtype=np.float64),
+        clock=clock,
+        people=result.people[run, second].astype(np.int32),
+        people_of_areas=np.ascontiguousarray(result.people_of_areas[run, second], dtype=np.int32),
+        door_open=np.ascontiguousarray(result.door_open[run, second], dtype=np.uint8),
+        bits=np.ascontiguousarray(result.bits[run, second], dtype=np.uint8))
     for remark in remarks:
         warnings.warn(remark, InputWarning, stacklevel=2)
     lit = np.zeros((*result.valid.shape, len(lights)), dtype=np.uint8)

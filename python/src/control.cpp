@@ -63,8 +63,8 @@ nb::tuple control_light(const std::string& file, const std::string& text, std::v
 void add_control(nb::module_& module) {
   using namespace nb::literals;
   module.def(
-      "control_light", &control_light, "file"_a, "text"_a, "sensors"_a, "areas"_a, "doors"_a, "window_s"_a, "run"_a,
-      "time_s"_a, "clock"_a, "people"_a, "people_of_areas"_a, "door_open"_a, "bits"_a,
+      "control_light", &control_light, nb::kw_only(), "file"_a, "text"_a, "sensors"_a, "areas"_a, "doors"_a,
+      "window_s"_a, "run"_a, "time_s"_a, "clock"_a, "people"_a, "people_of_areas"_a, "door_open"_a, "bits"_a,
       "(costs as CSV, lights, lit [row, light], remarks) of a rule's file or else its text, by columns of rows.");
 }
 

@@ -129,6 +129,7 @@ class Outputs {
     if (!options.schedule.empty()) schedule_.emplace(rule, about.window_s, options.schedule_min);
   }
 
+  void begin_run() noexcept { control_.begin_run(); }
   void add(const Sample& row, std::string_view day) {
     const control::LitRow lit = control_.add(row, day);
     days_.add(row, lit);
@@ -178,7 +179,7 @@ std::string view_command(const ControlOptions& options) {
 }
 
 template <typename Source>
-void control_rows(const ControlOptions& options, const Source& source) {
+void control_rows(const ControlOptions& options, Source&& source) {
   std::vector<Issue> remarks;
   const control::RuleSpec rule = rule_of(options, remarks);
   remark_deaf_seats(options, rule, remarks);
@@ -186,13 +187,22 @@ void control_rows(const ControlOptions& options, const Source& source) {
   {
     const Progress progress({"switching light"}, options.inputs.verbosity);
     const StopRequest stop;
-    source.each([&](const Sample& row, std::string_view day) {
-      stop.throw_if_made();
-      outputs.add(row, day);
-    });
+    source.each(
+        [&](const Sample& row, std::string_view day) {
+          stop.throw_if_made();
+          outputs.add(row, day);
+        },
+        [&] { outputs.begin_run(); });
   }
   control::Costs costs = outputs.costs();
   costs.remarks.insert(costs.remarks.begin(), remarks.begin(), remarks.end());
+  if (const std::int64_t n = source.n_missing(); n > 0) {
+    costs.remarks.push_back({Severity::warning,
+                             {},
+                             counted(static_cast<std::size_t>(n), "row") + " of " +
+                                 shortest_number(source.about().window_s) +
+                                 " s are missing between those that are there: nothing is known of them"});
+  }
   if (source.about().people == control::People::unknown) {
     costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
   }
@@ -247,7 +257,8 @@ void add_control_command(CLI::App& app) {
   pirsim control --log week.csv --delay 5 --report light.html        of a log: when it would have been lit
 )");
   const auto options = std::make_shared<ControlOptions>();
-  command.add_option("rows", options->rows, "rows of runs, or a dataset's folder")->option_text("ROWS...");
+  as_input(command.add_option("rows", options->rows, "rows of runs, a dataset's folder, or what pirsim log -o writes"))
+      ->option_text("ROWS...");
   offer_log(command, options->log);
   command.get_option("--log")->required(false);
   command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")
@@ -276,7 +287,10 @@ void add_control_command(CLI::App& app) {
   command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")
       ->option_text("MINUTES");
   offer_quiet(command, inputs.verbosity);
-  command.callback([options] { control_light(*options); });
+  command.callback([&command, options] {
+    require_one_standard_input(command);
+    control_light(*options);
+  });
 }
 
 }  // namespace pirsim::app

@@ -93,7 +93,7 @@ counting::Stretch stretch_of(const dataset::RoomDayRows& rows, double step_s) {
   for (std::size_t i = 0; i < n * per; ++i) {
     for (std::size_t k = 0; k < n_sensors; ++k) {
       std::uint8_t& bit = stretch.motion[i / per * n_sensors + k];
-      bit = std::max(bit, rows.motion[i * n_sensors + k]);
+      if (bit != 1) bit = std::max(bit, rows.motion[i * n_sensors + k]);  // what is unknown hides no motion
     }
   }
   for (std::size_t i = 0; i < n; ++i) stretch.people.push_back(rows.people[i * per + per - 1]);

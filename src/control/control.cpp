@@ -9,6 +9,7 @@
 #include "control/light_switch.hpp"
 #include "core/text.hpp"
 #include "schema/areas.hpp"
+#include "schema/bits.hpp"
 #include "schema/clock.hpp"
 
 namespace pirsim::control {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
-constexpr std::uint8_t unknown_bit = 2;
 
 /// Minutes, in order: those of the curve and the rule's.
 std::vector<double> delays_of(const LightSpec& light) {
@@ -113,6 +113,7 @@ class Light {
   std::uint8_t add(const Sample& row, int people) {
     ++row_, ++day_row_;
     DaySums& day = days_.back();
+    if (!is_here(row, people)) return unknown_bit;
     const std::optional<double> hour = hour_of(row);
     if (hour && !is_between(*hour, spec_.from_h, spec_.to_h)) {  // light from outside
       begin();
@@ -165,6 +166,15 @@ class Light {
     end_spell();
   }
 
+  /// Does the row's room have what the light goes by? Of all sensors as many as have to report motion are enough.
+  [[nodiscard]] bool is_here(const Sample& row, int people) const {
+    if (people == absent_people || (columns_.door && row.doors[*columns_.door] == absent_bit)) return false;
+    const auto n =
+        std::ranges::count_if(columns_.sensors, [&](std::size_t sensor) { return row.bits[sensor] != absent_bit; });
+    if (!spec_.sensors.empty()) return n == std::ssize(columns_.sensors);
+    return n >= (spec_.together ? spec_.together->sensors : 1);
+  }
+
   [[nodiscard]] bool is_night(std::optional<double> hour) const {
     return spec_.night && hour && is_between(*hour, spec_.night->from_h, spec_.night->to_h);
   }
@@ -176,6 +186,7 @@ class Light {
   /// lasts longer than the delay.
   void pass(const std::optional<Cue>& cue, bool is_night) {
     gap_rows_ = cue ? 0 : gap_rows_ + 1;
+    if (gap_rows_ > std::max(delay_rows_.back(), night_rows_) + 1) return;  // all has begun anew
     for (std::size_t i = 0; i < switches_.size(); ++i) {
       const std::int64_t delay_rows = delay_of(i, is_night);
       if (gap_rows_ > delay_rows)
@@ -191,7 +202,7 @@ class Light {
   /// None where a sensor isn't known.
   std::optional<Cue> cue_of(const Sample& row, int people) {
     int n_moved = 0;
-    bool is_known = true;
+    bool is_known = !columns_.door || row.doors[*columns_.door] != unknown_bit;
     for (std::size_t i = 0; i < columns_.sensors.size(); ++i) {
       const std::uint8_t bit = row.bits[columns_.sensors[i]];
       if (bit == 1) last_motion_[i] = row_;
@@ -348,7 +359,7 @@ struct Control::State {
   std::vector<Light> lights;
   std::vector<std::uint8_t> lit{};
   std::vector<std::int32_t> people_of{};
-  int replicate = -1;
+  std::optional<int> replicate{};  ///< none: a run begins
   std::string trial{}, day{};
   bool has_clock = false;
 };
@@ -367,6 +378,8 @@ Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People pe
 }
 Control::~Control() = default;
 Control::Control(Control&&) noexcept = default;
+
+void Control::begin_run() noexcept { state_->replicate.reset(); }
 
 LitRow Control::add(const Sample& row, std::string_view day) {
   State& state = *state_;

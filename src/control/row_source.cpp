@@ -1,8 +1,10 @@
 #include "control/row_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "control/row_file.hpp"
+#include "core/text.hpp"
+#include "io/files/compression.hpp"
 
 namespace pirsim::control {
 namespace {
@@ -44,25 +46,31 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
     const std::vector<fs::path> tables = tables_in(path);
     files_.insert(files_.end(), tables.begin(), tables.end());
   }
-  RowFile first(files_.front());
-  about_.columns = first.columns();
-  about_.people = first.people();
-  Sample row, next;
-  if (!first.next(row)) throw Error(ErrorCode::input, {files_.front().string()}, "there are no rows");
-  // The first row ends a window after the run began, if it is a run's first one.
-  about_.window_s = row.time_s;
-  if (first.next(next) && next.time_s > row.time_s) about_.window_s = next.time_s - row.time_s;
+  first_ = std::make_unique<io::RowReader>(files_.front());
+  about_.columns = first_->format().columns();
+  about_.people = first_->format().has(io::RowFormat::people) ? People::known : People::unknown;
+  about_.window_s = first_->step_s();
+  if (!(about_.window_s > 0.0)) throw Error(ErrorCode::input, {files_.front().string()}, "there are no rows");
 }
 
-void RowFiles::each(const TakeRow& take) const {
+void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
   Sample row;
   for (const fs::path& path : files_) {
-    RowFile file(path);
-    if (!same(file.columns(), about_.columns)) {
-      throw Error(ErrorCode::input, {path.string()},
-                  "its sensors, areas or doors aren't those of " + files_.front().string());
+    const std::unique_ptr<io::RowReader> file = first_ ? std::move(first_) : std::make_unique<io::RowReader>(path);
+    const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::input, {path.string()}, why); };
+    if (!same(file->format().columns(), about_.columns))
+      refuse("its sensors, areas or doors aren't those of " + files_.front().string());
+    if (file->format().has(io::RowFormat::people) != (about_.people == People::known))
+      refuse("only one of it and " + files_.front().string() + " has a column 'people'");
+    if (file->step_s() > 0.0 && std::abs(file->step_s() - about_.window_s) > 1e-6) {
+      refuse("its rows are " + shortest_number(file->step_s()) + " s apart, those of " + files_.front().string() + " " +
+             shortest_number(about_.window_s) + " s: give rows of one length");
     }
-    while (file.next(row)) take(row, {});
+    begin();
+    while (file->next_of_all(row)) {
+      take(row, {});
+      n_missing_ += file->is_filled() ? 1 : 0;
+    }
   }
 }
 
@@ -72,7 +80,7 @@ LogSamples::LogSamples(const Log& log, std::optional<double> window_s) : log_(lo
   about_.people = log.people ? People::known : People::unknown;
 }
 
-void LogSamples::each(const TakeRow& take) const {
+void LogSamples::each(const TakeRow& take, const std::function<void()>& /*begin*/) const {
   constexpr std::size_t at_once = 100'000, to_seconds = 19, to_date = 10;
   const LogWindows windows(log_, about_.window_s);
   Sample row;

@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "io/read/row_reader.hpp"
 #include "pirsim/control.hpp"
 #include "pirsim/log.hpp"
 
@@ -23,16 +25,20 @@ struct RowsAbout {
 /// Gets each row, and the day that it belongs to, or no text.
 using TakeRow = std::function<void(const Sample& row, std::string_view day)>;
 
-/// Tables of runs, in order; a folder is a dataset, all of its days. Throws Error: io, input.
+/// Tables of runs, in order; a folder is a dataset, all of its days. Each is opened once. Throws Error: io, input.
 class RowFiles {
  public:
   explicit RowFiles(std::span<const std::filesystem::path> paths);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
-  void each(const TakeRow& take) const;
+  /// Once. Where rows are missing in a run, rows of which nothing is known. begin: before the first row of each file.
+  void each(const TakeRow& take, const std::function<void()>& begin);
+  [[nodiscard]] std::int64_t n_missing() const noexcept { return n_missing_; }  ///< of those that were given
 
  private:
   std::vector<std::filesystem::path> files_;
+  std::unique_ptr<io::RowReader> first_;
   RowsAbout about_;
+  std::int64_t n_missing_ = 0;
 };
 
 /// A log in windows; the log outlives it. window_s: none: its readings' interval, or a second of events.
@@ -40,7 +46,8 @@ class LogSamples {
  public:
   LogSamples(const Log& log, std::optional<double> window_s);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
-  void each(const TakeRow& take) const;
+  void each(const TakeRow& take, const std::function<void()>& begin) const;
+  [[nodiscard]] std::int64_t n_missing() const noexcept { return 0; }  ///< a log tells it itself
 
  private:
   const Log& log_;

@@ -1,13 +1,11 @@
 // A dataset read back, for who learns from it.
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.hpp"
 #include "dataset/recipe.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/read/csv_reader.hpp"
-#include "pirsim/columns.hpp"
+#include "io/read/row_reader.hpp"
+#include "schema/bits.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -33,45 +31,34 @@ std::vector<std::string> paths_of(const fs::path& folder, Part part) {
   return paths;
 }
 
-/// Columns of sensors: the others have names of their own.
-std::vector<std::size_t> sensor_columns(const io::CsvTable& table) {
-  std::vector<std::size_t> columns;
-  const std::vector<std::string> names = table.names(), own = column_names<DayLine>();
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool is_sensor = std::ranges::find(own, names[i]) == own.end() && owner_of(names[i]) == Each::sensor;
-    if (is_sensor && table.n_rows() > 0 && !table.text(0, i).empty()) columns.push_back(i);
-  }
-  return columns;
-}
-
 RoomDayRows read_day(const fs::path& file) {
-  const io::CsvTable table = io::CsvTable::read(file);
-  Diagnostics faults;
-  const auto room = table.required_column("room", faults), day = table.required_column("day", faults);
-  const auto time = table.required_column("time_s", faults), people = table.required_column("people", faults);
-  faults.throw_if_errors();
-  RoomDayRows read;
-  if (table.n_rows() == 0) return read;
-  read.room = table.integer(0, *room, faults).value_or(0);
-  read.day = table.integer(0, *day, faults).value_or(0);
-  read.window_s = table.number(0, *time, faults).value_or(1.0);
-  const std::vector<std::size_t> columns = sensor_columns(table);
-  for (const std::size_t column : columns) read.sensors.push_back(table.names()[column]);
-  read.motion.reserve(table.n_rows() * columns.size());
-  read.people.reserve(table.n_rows());
-  for (std::size_t row = 0; row < table.n_rows(); ++row) {
-    const auto count = table.integer(row, *people, faults);
-    if (!count || *count < 0) faults.error(table.where(row, *people), "people: expected a count");
-    read.people.push_back(count.value_or(0));
-    for (const std::size_t column : columns) {
-      const std::string& text = table.text(row, column);
-      if (text != "0" && text != "1") faults.error(table.where(row, column), "expected 0 or 1, got '" + text + "'");
-      read.motion.push_back(text == "1" ? 1 : 0);
-    }
-    if (faults.has_errors()) break;
+  io::RowReader reader(file);
+  for (const auto& [column, name] : {std::pair{io::RowFormat::room, "room"}, std::pair{io::RowFormat::day, "day"},
+                                     std::pair{io::RowFormat::people, "people"}}) {
+    if (!reader.format().has(column))
+      throw Error(ErrorCode::input, {file.string(), 1, 1}, "column '" + std::string(name) + "' is missing");
   }
-  if (!(read.window_s > 0.0)) faults.error(table.where(0, *time), "time_s: the first window has no length");
-  faults.throw_if_errors();
+  RoomDayRows read;
+  read.window_s = reader.step_s();
+  std::vector<std::size_t> columns;  // of the sensors that this room has
+  std::string day;
+  Sample row;
+  while (reader.next_of_all(row)) {
+    if (read.people.empty()) {
+      read.room = row.replicate;
+      day = row.trial;
+      read.day = io::parse_number<int>(day).value_or(0);
+      for (std::size_t i = 0; i < row.bits.size(); ++i) {
+        if (row.bits[i] == absent_bit) continue;
+        columns.push_back(i);
+        read.sensors.push_back(reader.format().columns().sensors[i]);
+      }
+    }
+    if (row.replicate != read.room || row.trial != day)
+      throw Error(ErrorCode::input, reader.format().where(io::RowFormat::day), "rows of more than one day");
+    read.people.push_back(row.people);
+    for (const std::size_t column : columns) read.motion.push_back(row.bits[column]);
+  }
   return read;
 }
 

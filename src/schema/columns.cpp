@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "schema/bits.hpp"
+
 namespace pirsim {
 namespace {
 
@@ -22,6 +24,10 @@ constexpr auto seat = [](const auto& line) -> Cell { return line.row.seat; };
 constexpr auto x_m = [](const auto& line) -> Cell { return line.row.place_m.x; };
 constexpr auto z_m = [](const auto& line) -> Cell { return line.row.place_m.y; };
 
+/// Empty where nobody knows.
+Cell bit_cell(std::uint8_t bit) { return bit < unknown_bit ? Cell(std::int64_t{bit}) : Cell(); }
+Cell people_cell(int people) { return people < 0 ? Cell() : Cell(std::int64_t{people}); }
+
 constexpr int millimetres = 3;  ///< decimals of a metre
 
 constexpr Column<Sample> rows[]{
@@ -41,13 +47,13 @@ constexpr Column<Sample> rows[]{
     {{"people", Holds::count,
       "number of people whose pelvis is over the floor area at `time_s`, by their positions and not by the script", "1",
       When::simulated},
-     [](const Sample& row) -> Cell { return row.people; }},
+     [](const Sample& row) { return people_cell(row.people); }},
     {{"one per area", Holds::count,
       "only with [areas](scene.md#areas): `people_` and the area's id; how many of `people` are in it. "
       "`people_elsewhere`, if some of the floor is in no area: how many are there. They sum to `people`",
       "1", When::simulated},
      nullptr,
-     [](const Sample& row, std::size_t area) -> Cell { return row.people_of_areas[area]; },
+     [](const Sample& row, std::size_t area) { return people_cell(row.people_of_areas[area]); },
      Each::area},
     {{"one per door",
       Holds::bit,
@@ -55,11 +61,12 @@ constexpr Column<Sample> rows[]{
       {},
       When::simulated},
      nullptr,
-     [](const Sample& row, std::size_t door) -> Cell { return row.doors[door]; },
+     [](const Sample& row, std::size_t door) { return bit_cell(row.doors[door]); },
      Each::door},
-    {{"one per sensor", Holds::bit, "1 if the sensor saw motion in (time_s - window, time_s]"},
+    {{"one per sensor", Holds::bit,
+      "1 if the sensor saw motion in (time_s - window, time_s]; empty where nobody knows, in rows of logs"},
      nullptr,
-     [](const Sample& row, std::size_t sensor) -> Cell { return row.bits[sensor]; }},
+     [](const Sample& row, std::size_t sensor) { return bit_cell(row.bits[sensor]); }},
 };
 
 constexpr Column<OccupantLine> occupants[]{

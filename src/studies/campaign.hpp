@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/read/row_reader.hpp"
 #include "io/write/manifest.hpp"
 #include "pirsim/sample.hpp"
 #include "studies/summary.hpp"
@@ -46,22 +47,21 @@ class RowTally {
   [[nodiscard]] const Summary& finish();
 
  private:
-  void end_line();
-  void take_header();
+  void take_line(std::string_view line);
   void end_run();
 
   std::vector<std::string> trials_;
   SummarySpec spec_;
   std::vector<MeasuredCell> measured_;
-  std::optional<Summary> summary_;  ///< once the header is known
+  std::optional<io::RowFormat> format_;  ///< once the header is known, as the next two
+  std::optional<Summary> summary_;
   std::optional<RunCounts> counts_;
-  std::size_t phase_ = 0, first_area_ = 0, first_sensor_ = 0;  ///< columns
   Sample row_;
-  std::string replicate_;  ///< of the run whose rows come in; empty before the first
+  std::optional<int> replicate_;  ///< of the run whose rows come in; none before the first
   std::string trial_;
-  std::vector<std::string> fields_{1};  ///< of the line so far
-  std::size_t n_lines_ = 0;
-  enum class Quotes { none, open, closed } quotes_ = Quotes::none;  ///< of the field so far
+  std::string line_;  ///< so far
+  bool is_quoted_ = false;
+  int n_lines_ = 0;
 };
 
 struct ShardReport {

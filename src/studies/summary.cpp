@@ -174,8 +174,10 @@ void RunCounts::reset() {
 void RunCounts::add(const Sample& row) {
   const auto& phases = spec_.phases;
   if (!phases.empty() && std::find(phases.begin(), phases.end(), row.phase) == phases.end()) return;
-  for (std::size_t sensor = 0; sensor < counts_.size(); ++sensor) counts_[sensor] += row.bits[sensor] != 0 ? 1 : 0;
-  for (std::size_t area = 0; area < areas_.size(); ++area) areas_[area].add(row.people_of_areas[area]);
+  for (std::size_t sensor = 0; sensor < counts_.size(); ++sensor) counts_[sensor] += row.bits[sensor] == 1 ? 1 : 0;
+  for (std::size_t area = 0; area < areas_.size(); ++area) {
+    if (row.people_of_areas[area] >= 0) areas_[area].add(row.people_of_areas[area]);
+  }
 }
 
 InsideCount count_inside(std::span<const RangedValue> cells) {

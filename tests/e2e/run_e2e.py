@@ -432,9 +432,9 @@ class Light(unittest.TestCase):
     def test_what_are_no_rows_is_told_with_its_place(self):
         good = write(self.folder, "rows.csv", "replicate,trial,time_s,phase,people,PIR1\n1,a,1,x,0,1\n1,a,2,x,0,0\n")
         for name, text, told in (("log.csv", "time,PIR1\n2026-03-02T10:00:00,1\n", "log.csv:1:1: error: these aren't rows"),
-                                 ("bad.csv", good.read_text() + "1,a,3,x,one,0\n", "bad.csv:4:9: error: people: expected a number, got 'one'"),
+                                 ("bad.csv", good.read_text() + "1,a,3,x,one,0\n", "bad.csv:4:9: error: people: expected a number of people, got 'one'"),
                                  ("cut.csv", good.read_text() + "1,a,3\n", "cut.csv:4:1: error: expected 6 fields, got 3"),
-                                 ("empty.csv", "", "empty.csv:1:1: error: the file is empty")):
+                                 ("empty.csv", "", "empty.csv:1:1: error: expected a line with column names")):
             result = pirsim("control", write(self.folder, name, text), code=3)
             self.assertIn(told, result.stderr)
         other = write(self.folder, "other.csv", good.read_text().replace("PIR1", "PIR2"))

@@ -19,8 +19,8 @@ MOST_SENSORS = 1000
 
 Motion = npt.NDArray[np.uint8]
 LogLike = Union[PathOr, "list[PathOr]", Log, npt.ArrayLike]
-"""A log's file, files that are parts of one log, what read_log() gave, or an array [reading, sensor] of 0, 1, and 2 or
-NaN for unknown."""
+"""A log's file, files that are parts of one log, what read_log() gave, or an array [reading, sensor] of 0, 1, and for
+unknown 2, NaN, None or what is masked."""
 MapLike = Union[PathOr, Mapping[str, Any]]
 """What a file's columns mean, as of read_log()."""
 
@@ -36,14 +36,24 @@ class Day(NamedTuple):
     """[reading] at its end; -1 where nobody counted."""
 
 
+def _known_numbers(values: npt.ArrayLike, unknown: int) -> npt.NDArray[Any]:
+    """As numbers, `unknown` in place of what is masked, NaN, None, pandas' NA or an empty text. Raises ValueError."""
+    array = np.ma.asarray(values)
+    known, data = ~np.ma.getmaskarray(array), np.asarray(array.data)
+    if data.dtype.kind in "OU":
+        known &= np.array([str(one) not in ("", "None", "nan", "<NA>", "--") for one in data.ravel()],
+                          dtype=bool).reshape(data.shape)
+        data = data.astype(object)
+        data[~known] = unknown
+    if data.dtype.kind not in "bui":
+        data = data.astype(float)  # raises ValueError for what isn't a number
+        known &= ~np.isnan(data)
+    return np.where(known, data, np.int64(unknown))
+
+
 def as_motion(bits: npt.ArrayLike) -> Motion:
-    """[reading, sensor]; a list of numbers is that of one sensor. What is masked is unknown. Raises ValueError."""
-    values = np.asarray(bits)
-    if np.ma.isMaskedArray(bits):
-        values = np.where(np.ma.getmaskarray(bits), UNKNOWN, values)
-    if values.dtype.kind not in "bui":
-        values = values.astype(float)  # raises ValueError for what isn't a number
-        values = np.where(np.isnan(values), UNKNOWN, values)
+    """[reading, sensor]; a list of numbers is that of one sensor. Raises ValueError."""
+    values = _known_numbers(bits, UNKNOWN)
     if values.ndim == 1:
         values = values[:, np.newaxis]
     if values.ndim != 2 or not 1 <= values.shape[1] <= MOST_SENSORS:
@@ -58,8 +68,8 @@ def as_motion(bits: npt.ArrayLike) -> Motion:
 
 def as_day(day: Day) -> Day:
     """With arrays as the module takes them. Raises ValueError."""
-    motion, people = as_motion(day.motion), np.ma.filled(day.people, -1)
-    if people.dtype.kind == "b" or people.shape != (len(motion),) or not np.array_equal(people, np.floor(people)):
+    motion, people = as_motion(day.motion), _known_numbers(day.people, -1)
+    if np.asarray(day.people).dtype.kind == "b" or people.shape != (len(motion),) or not np.array_equal(people, np.floor(people)):
         raise ValueError(f"room {day.room}: expected a whole number of people for each of {len(motion)} readings")
     if len(people) and not (-1 <= people.min() and people.max() <= MOST_PEOPLE):
         raise ValueError(f"room {day.room}: expected 0 to {MOST_PEOPLE} people, or -1 where nobody counted")
@@ -76,7 +86,8 @@ def read_dataset(folder: PathOr, part: str = "train", *, step_s: float = 30.0, t
         if n_rows < 1 or abs(n_rows * row_s - step_s) > 1e-6:
             raise ValueError(f"step_s: a reading of {step_s:g} s isn't a whole number of the dataset's rows of {row_s:g} s")
         n = len(people) // n_rows
-        joined = motion[:n * n_rows].reshape(n, n_rows, -1).max(axis=1)
+        rows = motion[:n * n_rows].reshape(n, n_rows, -1)
+        joined = np.where((rows == 1).any(axis=1), np.uint8(1), rows.max(axis=1))  # what is unknown hides no motion
         days.append(Day(room, joined, people[n_rows - 1:n * n_rows:n_rows].copy()))
     return days
 

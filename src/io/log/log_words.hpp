@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/read/split_fields.hpp"
+
 namespace pirsim::io {
 
 /// log_state of "1", "0.0", "on", "False", "motion", "unavailable", ""; none for what is no state.
@@ -23,10 +25,5 @@ enum class NameSays { nothing, time, sensor, state, motion, count, presence, oth
 [[nodiscard]] NameSays what_name_says(std::string_view name);
 /// "M003", "MA012": how CASAS calls motion sensors.
 [[nodiscard]] bool is_casas_motion(std::string_view name);
-
-/// The fields of a line. '"' quotes, doubled within quotes; ' ' separates at every run of spaces and tabs. They live as
-/// long as the line and `unquoted`. False if a quote isn't closed.
-[[nodiscard]] bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
-                                std::vector<std::string>& unquoted);
 
 }  // namespace pirsim::io

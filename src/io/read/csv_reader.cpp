@@ -27,6 +27,12 @@ void RepeatedFaults::add(const std::string& kind, const Diagnostics& found) {
   }
 }
 
+std::size_t RepeatedFaults::size() const noexcept {
+  std::size_t n = 0;
+  for (const Kind& kind : kinds_) n += kind.n;
+  return n;
+}
+
 void RepeatedFaults::tell(Diagnostics& faults) const {
   for (const Kind& kind : kinds_) {
     const std::size_t more = kind.n - 1;
@@ -44,7 +50,7 @@ class CsvParser {
     CsvTable table;
     table.file_ = file_;
     while (!text_.empty()) {
-      if (skip_line_without_data()) continue;
+      if (skip_line_without_data(table.header_.empty())) continue;
       std::vector<CsvTable::Field> record = read_record();
       if (table.header_.empty()) {
         table.header_ = std::move(record);
@@ -79,8 +85,9 @@ class CsvParser {
       if (last) return;
     }
   }
-  bool skip_line_without_data() {
-    if (!at_line_end() && text_.front() != '#') return false;
+  /// A comment stands before the header: behind it a name may begin so.
+  bool skip_line_without_data(bool is_before_header) {
+    if (!at_line_end() && !(is_before_header && text_.front() == '#')) return false;
     end_line();
     return true;
   }

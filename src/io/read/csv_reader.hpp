@@ -18,6 +18,8 @@ class RepeatedFaults {
   void add(const std::string& kind, const Where& where, const std::string& message);
   void add(const std::string& kind, const Diagnostics& found);  ///< each of its errors
   void tell(Diagnostics& faults) const;
+  [[nodiscard]] bool empty() const noexcept { return kinds_.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept;  ///< of all kinds together
 
  private:
   struct Kind {
@@ -30,7 +32,8 @@ class RepeatedFaults {
 };
 
 /// A header and rows of as many fields. Quoted fields, doubled quotes, line ends inside quotes, CRLF and a byte order
-/// mark are understood, and UTF-16 with its mark; empty lines and lines that begin with '#' are skipped.
+/// mark are understood, and UTF-16 with its mark; empty lines are skipped, and comments before the header: lines that
+/// begin with '#'.
 class CsvTable {
  public:
   /// The file may be compressed by gzip or Zstandard. Throws Error: io (no file), input (content).

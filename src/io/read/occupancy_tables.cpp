@@ -4,15 +4,17 @@
 
 #include "core/text.hpp"
 #include "io/read/yaml_map.hpp"
+#include "schema/columns.hpp"
 #include "schema/fields.hpp"
 #include "schema/limits.hpp"
 
 namespace pirsim::io {
 
-void require_one_run(const CsvTable& table, RepeatedFaults& faults) {
-  for (const char* name : {"replicate", "trial"}) {
+void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults) {
+  for (const std::string_view name :
+       {std::string_view("replicate"), std::string_view("trial"), room_column.name, day_column.name}) {
     const auto column = table.column(name);
-    if (!column) continue;
+    if (!column || (name == day_column.name && time.is_clock())) continue;  // a clock goes on from day to day
     for (std::size_t row = 1; row < table.n_rows(); ++row) {
       if (table.text(row, *column) == table.text(0, *column)) continue;
       faults.add("runs", table.where(row, *column),
@@ -63,7 +65,7 @@ class CountsReader {
       if (const auto found = table_.required_column(area.column, faults_)) of_areas.push_back(*found);
     }
     if (of_areas.size() < counts_.areas.size()) return;
-    require_one_run(table_, repeated_);
+    require_one_run(table_, time, repeated_);
     for (std::size_t row = 0; row < table_.n_rows() && counts_.times_s.size() < limits::occupancy_rows; ++row) {
       Diagnostics found;
       const auto seconds = time.seconds(row, found);

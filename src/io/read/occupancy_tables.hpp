@@ -25,7 +25,7 @@ void read_positions(const CsvTable& table, PositionsSpec& positions, Diagnostics
 // What they share.
 
 /// A study's rows have many runs, and then time begins anew.
-void require_one_run(const CsvTable& table, RepeatedFaults& faults);
+void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults);
 
 /// Columns of a person, and of where they are on the floor, if the table has them.
 struct PersonColumns {

@@ -23,7 +23,7 @@ class PlacesReader {
     const TimeColumn time(table_, {}, faults_);
     seat_ = table_.column("seat") ? table_.column("seat") : table_.required_column("place", faults_);
     activity_ = table_.column("activity");
-    require_one_run(table_, repeated_);
+    require_one_run(table_, time, repeated_);
     if (!time.is_found() || !seat_ || !columns_.id) return repeated_.tell(faults_);
     if (table_.n_rows() > limits::occupancy_rows)
       return faults_.error(table_.header_place(), too_many(limits::occupancy_rows, "rows"));

@@ -20,7 +20,8 @@ class PositionsReader {
     const auto heading = table_.column("heading") ? table_.column("heading") : table_.column("heading_deg");
     if (!columns_.x) static_cast<void>(table_.required_column("x", faults_));
     if (!columns_.z) static_cast<void>(table_.required_column("z", faults_));
-    if (!time.is_found() || !columns_.id || faults_.has_errors()) return;
+    require_one_run(table_, time, repeated_);
+    if (!time.is_found() || !columns_.id || faults_.has_errors()) return repeated_.tell(faults_);
     if (table_.n_rows() > limits::occupancy_rows)
       return faults_.error(table_.header_place(), too_many(limits::occupancy_rows, "rows"));
     double first_s = std::numeric_limits<double>::infinity();

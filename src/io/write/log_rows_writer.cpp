@@ -1,6 +1,7 @@
 #include "io/write/log_rows_writer.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 
 #include "pirsim/csv.hpp"
@@ -8,50 +9,42 @@
 namespace pirsim::io {
 namespace {
 
-/// Where a window ends, by the offset at its begin: windows end where the next one begins.
-LogMoment end_of(const LogRows& rows, std::size_t window, const LogMoment& next) {
-  if (window + 1 < rows.n_windows()) return rows.begin[window + 1];
-  return next;
-}
-
-std::string header_of(const LogRows& rows, LogClock clock) {
-  std::string line = "time_s";
-  if (clock != LogClock::elapsed) line += ",time";
-  if (!rows.people.empty()) line += ",people";
-  for (const std::string& sensor : rows.sensors) line += ',' + csv_field(sensor);
-  return line + '\n';
+std::vector<std::string> columns_of_log(const LogRows& rows) {
+  std::vector<std::string> names{"time_s"};
+  if (rows.clock != LogClock::elapsed) names.emplace_back("time");
+  if (!rows.people.empty()) names.emplace_back("people");
+  names.insert(names.end(), rows.sensors.begin(), rows.sensors.end());
+  return names;
 }
 
 }  // namespace
 
 void write_log_rows(const LogWindows& windows, const std::function<void(std::string_view)>& write) {
   constexpr std::size_t at_once = 4096;
-  std::string text;
+  std::ostringstream text;
+  std::optional<CsvWriter> table;
   double zero_s = 0.0;
+  Sample row;
   for (std::size_t first = 0; first < windows.size(); first += at_once) {
-    LogRows rows = windows.rows(first, std::min(at_once, windows.size() - first));
+    const LogRows rows = windows.rows(first, std::min(at_once, windows.size() - first));
     const bool has_clock = rows.clock != LogClock::elapsed;
-    if (first == 0) {
+    if (!table) {
       zero_s = has_clock ? rows.begin.front().seconds() : 0.0;
-      text = header_of(rows, rows.clock);
+      table.emplace(text, columns_of_log(rows));
     }
     const LogMoment after = windows.begin(first + rows.n_windows());
     for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-      const LogMoment end = end_of(rows, i, after);
-      text += csv_number(static_cast<double>(end.us) / 1e6 - zero_s);
-      if (has_clock) text += ',' + to_text(end, rows.clock);
-      if (!rows.people.empty()) {
-        text += ',';
-        if (rows.people[i] != log_state::unknown_count) text += std::to_string(rows.people[i]);
-      }
-      for (std::size_t sensor = 0; sensor < rows.sensors.size(); ++sensor) {
-        const std::uint8_t state = rows.at(i, sensor);
-        text += state == log_state::unknown ? "," : state == log_state::on ? ",1" : ",0";
-      }
-      text += '\n';
+      // Windows end where the next one begins, by the offset there.
+      const LogMoment& end = i + 1 < rows.n_windows() ? rows.begin[i + 1] : after;
+      row.time_s = static_cast<double>(end.us) / 1e6 - zero_s;
+      row.clock = to_text(end, rows.clock);
+      row.people = rows.people.empty() ? log_state::unknown_count : rows.people[i];
+      const auto bits = rows.motion.begin() + static_cast<std::ptrdiff_t>(i * rows.sensors.size());
+      row.bits.assign(bits, bits + static_cast<std::ptrdiff_t>(rows.sensors.size()));
+      table->write(row);
     }
-    write(text);
-    text.clear();
+    write(text.view());
+    text.str({});
   }
 }
 

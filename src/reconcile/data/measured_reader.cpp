@@ -7,6 +7,8 @@
 
 #include "core/digest.hpp"
 #include "core/text.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/input.hpp"
 #include "pirsim/csv.hpp"
 #include "reconcile/data/measured_log.hpp"
 #include "schema/columns.hpp"
@@ -35,30 +37,32 @@ std::vector<ColumnInfo> row_columns() {
   return columns;
 }
 
+/// The line with the names, or less if that is all.
+std::string_view up_to_header(std::string_view text) {
+  std::size_t end = 0;
+  bool is_header = false;
+  while (end < text.size() && !is_header) {
+    const std::string_view rest = text.substr(end);
+    is_header = !rest.starts_with('#') && !rest.starts_with('\n') && !rest.starts_with("\r\n");
+    end += std::min(rest.find('\n'), rest.size() - 1) + 1;
+  }
+  return text.substr(0, end);
+}
+
 }  // namespace
 
-MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame)
-    : frame_(frame.of_whole_runs()), asked_(frame), file_(file), table_(io::CsvTable::parse(text, file)) {
+MeasuredReader::MeasuredReader(std::string_view bytes, const std::string& file, const StudyFrame& frame)
+    : frame_(frame.of_whole_runs()), asked_(frame), text_(io::text_from(std::string(bytes), file)), file_(file) {
   measured_.file = file;
-  measured_.digest = sha256(text);
+  measured_.digest = sha256(bytes);
 }
 
 Measured MeasuredReader::read() {
-  replicate_ = table_.column("replicate");
-  if (!replicate_) replicate_ = table_.column("day");  // each day of a dataset is a run of its script
-  phase_ = table_.column("phase");
-  time_ = table_.column("time_s");
-  const bool has_sums = table_.column("sensor").has_value();
-  columns_ = has_sums ? std::vector<ColumnInfo>(sum_columns().begin(), sum_columns().end()) : row_columns();
-  trial_ = column_of("trial");
-  if (!trial_ && frame_.trials.size() > 1) {
-    static_cast<void>(table_.required_column("trial", faults_));
-    faults_.throw_if_errors();
-  }
-  if (has_sums) {
-    read_sums();
+  if (io::CsvTable::parse(up_to_header(text_), file_).column("sensor")) {
+    read_sums(io::CsvTable::parse(text_, file_));
   } else {
-    read_rows();
+    io::RowReader reader(text_, file_);
+    read_rows(reader);
   }
   repeated_.tell(faults_);
   faults_.throw_if_errors();
@@ -69,67 +73,61 @@ Measured MeasuredReader::read() {
 }
 
 std::optional<std::size_t> MeasuredReader::find(const std::vector<std::string>& names, const std::string& what,
-                                                std::size_t row, std::size_t column) {
-  const std::string& name = table_.text(row, column);
+                                                const std::string& name, const Where& where) {
   const auto known = std::ranges::find(names, name);
   if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
   if (unknown_names_.insert(name).second)  // each is told once
-    faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + near_or_all(name, names));
+    faults_.error(where, what + " '" + name + "' is not in the study" + near_or_all(name, names));
   return std::nullopt;
 }
 
-std::optional<std::size_t> MeasuredReader::trial_of(std::size_t row) {
-  if (!trial_) return 0;
-  return find(frame_.trials, "trial", row, *trial_);
-}
-
-int MeasuredReader::replicate_of(std::size_t row) {
-  if (!replicate_) return 1;
-  Diagnostics found;
-  const int replicate = table_.integer(row, *replicate_, found).value_or(1);
-  repeated_.add("replicate", found);
-  return replicate;
-}
-
-std::optional<double> MeasuredReader::number(std::size_t row, std::size_t column) {
-  Diagnostics found;
-  const std::optional<double> value = table_.number(row, column, found);
-  repeated_.add("number " + std::to_string(column), found);
-  return value;
-}
-
 /// Before anything is made of them: each is simulated as often as there are datasets in the reference table.
-void MeasuredReader::refuse_too_many(const RunKey& run, std::size_t row) {
+void MeasuredReader::refuse_too_many(const RunKey& run, const Where& where) {
   std::set<int>& replicates = replicates_[run.first];
   replicates.insert(run.second);
   if (replicates.size() <= limits::measured_replicates) return;
-  throw Error(ErrorCode::input, table_.where(row, *replicate_),
+  throw Error(ErrorCode::input, where,
               "more than " + std::to_string(limits::measured_replicates) + " replicates of trial '" +
                   frame_.trials[run.first] + "': measured data can't have more");
 }
 
-void MeasuredReader::read_sums() {
+void MeasuredReader::read_sums(const io::CsvTable& table) {
   measured_.kind = Measured::Kind::sums;
-  const std::size_t sensor = *table_.column("sensor");
+  const auto column_of = [&](std::string_view name) {
+    const ColumnInfo& column = *std::ranges::find(sum_columns(), name, &ColumnInfo::name);
+    const auto named = table.column(column.name), by_alias = table.column(column.alias);
+    if (named && by_alias) {
+      faults_.error({file_, 1, 1}, "columns '" + std::string(column.name) + "' and '" + std::string(column.alias) +
+                                       "' mean the same: give one of them");
+    }
+    return named ? named : by_alias;
+  };
+  const std::size_t sensor = *table.column("sensor");
+  const auto trial_column = column_of("trial"), replicate_column = table.column("replicate");
   std::optional<std::size_t> seconds = column_of("seconds");
-  if (!seconds) seconds = table_.required_column("seconds", faults_);
+  if (!trial_column && frame_.trials.size() > 1) static_cast<void>(table.required_column("trial", faults_));
+  if (!seconds) seconds = table.required_column("seconds", faults_);
   // A missing column that is misspelt would be told a second time, as unknown.
   faults_.throw_if_errors();
-  refuse_unknown_columns({});
+  refuse_unknown_columns(table.names(), sum_columns());
   faults_.throw_if_errors();
   std::set<std::pair<RunKey, std::size_t>> seen;
   std::size_t missing = 0;
-  for (std::size_t row = 0; row < table_.n_rows(); ++row) {
-    const auto trial = trial_of(row);
-    const auto which = find(frame_.sensors, "sensor", row, sensor);
-    const int replicate = replicate_of(row);
-    const auto value = number(row, *seconds);
+  for (std::size_t row = 0; row < table.n_rows(); ++row) {
+    Diagnostics found;
+    const auto trial =
+        trial_column ? find(frame_.trials, "trial", table.text(row, *trial_column), table.where(row, *trial_column))
+                     : std::optional<std::size_t>(0);
+    const auto which = find(frame_.sensors, "sensor", table.text(row, sensor), table.where(row, sensor));
+    const int replicate = replicate_column ? table.integer(row, *replicate_column, found).value_or(1) : 1;
+    const auto value = table.number(row, *seconds, found);
+    repeated_.add("number", found);
     if (!trial || !which) continue;
-    refuse_too_many({*trial, replicate}, row);
+    refuse_too_many({*trial, replicate}, table.where(row, replicate_column.value_or(sensor)));
     if (!seen.insert({{*trial, replicate}, *which}).second)
-      repeated_.add("twice", table_.where(row, sensor), "this trial and sensor appear twice");
+      repeated_.add("twice", table.where(row, sensor), "this trial and sensor appear twice");
     if (value && *value < 0.0)
-      repeated_.add("negative", table_.where(row, *seconds), "seconds with motion can't be negative");
+      repeated_.add("negative", table.where(row, *seconds), "seconds with motion can't be negative");
     if (!value) {
       ++missing;
       continue;
@@ -151,11 +149,13 @@ void MeasuredReader::read_sums() {
   }
 }
 
-std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
+/// Where each of the study's sensors is among `names`.
+std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns(const std::vector<std::string>& names) {
   std::vector<std::optional<std::size_t>> columns;
   std::vector<std::string> absent;
   for (const std::string& sensor : frame_.sensors) {
-    columns.push_back(table_.column(sensor));
+    const auto at = std::ranges::find(names, sensor);
+    columns.push_back(at == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - names.begin())));
     if (!columns.back()) absent.push_back(sensor);
   }
   if (absent.size() == frame_.sensors.size()) {
@@ -167,55 +167,59 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
   return columns;
 }
 
-/// By its name or its alias. The columns of the table are known by then.
-std::optional<std::size_t> MeasuredReader::column_of(std::string_view name) {
-  const ColumnInfo& column = *std::ranges::find(columns_, name, &ColumnInfo::name);
-  const auto named = table_.column(column.name), by_alias = table_.column(column.alias);
-  if (named && by_alias) {
-    faults_.error({file_, 1, 1}, "columns '" + std::string(column.name) + "' and '" + std::string(column.alias) +
-                                     "' mean the same: give one of them");
-  }
-  return named ? named : by_alias;
-}
-
-void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& sensors) {
+void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& names,
+                                            std::span<const ColumnInfo> columns) {
   std::vector<std::string> known;
-  for (const ColumnInfo& column : columns_) {
+  for (const ColumnInfo& column : columns) {
     known.emplace_back(column.name);
     if (!column.alias.empty()) known.emplace_back(column.alias);
   }
-  known.insert(known.end(), sensors.begin(), sensors.end());
-  for (const std::string& name : table_.names()) {
+  if (measured_.kind == Measured::Kind::series) known.insert(known.end(), frame_.sensors.begin(), frame_.sensors.end());
+  for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end() || owner_of(name) != Each::sensor) continue;
     faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + near_or_all(name, known));
   }
 }
 
-void MeasuredReader::read_rows() {
-  if (!time_) static_cast<void>(table_.required_column("time_s", faults_));
-  const auto columns = sensor_columns();
-  if (!faults_.has_errors()) refuse_unknown_columns(frame_.sensors);
+void MeasuredReader::read_rows(io::RowReader& reader) {
+  using Format = io::RowFormat;
+  const Format& format = reader.format();
+  const std::vector<std::string>& sensors = format.columns().sensors;
+  if (!format.has(Format::trial) && frame_.trials.size() > 1) {
+    faults_.error({file_, 1, 1}, "column 'trial' is missing" + near_or_all("trial", sensors));
+    faults_.throw_if_errors();
+  }
+  const auto columns = sensor_columns(sensors);
+  if (!faults_.has_errors()) refuse_unknown_columns(sensors, row_columns());
   faults_.throw_if_errors();
 
-  local_time_ = table_.column("time");
-  people_ = table_.column("people");
-  counted_.assign(asked_.units.of_row.size(), -1);
+  step_s_ = reader.step_s();
+  tells_phases_ = format.has(Format::phase) && !frame_.counted_phases.empty();
+  std::vector<std::int32_t> counted(asked_.units.of_row.size(), -1);  // (n_days x n_rows) people in the data
   std::map<RunKey, std::vector<Row>> runs;
-  for (std::size_t row = 0; row < table_.n_rows(); ++row) {
-    const auto place = asked_.units.empty() ? place_of(row) : place_in_days(row);
+  Sample row;
+  while (reader.next(row)) {
+    const Place place = asked_.units.empty() ? place_of(row, format) : place_in_days(row, format);
     if (!place) continue;
     const auto& [run, time_s] = *place;
-    refuse_too_many(run, row);
-    runs[run].push_back({row, time_s});
-    note_people(row, run, time_s);
+    refuse_too_many(run, format.where(Format::replicate));
+    const bool is_counted = std::ranges::find(frame_.counted_phases, row.phase) != frame_.counted_phases.end();
+    Row& added = runs[run].emplace_back(Row{format.where(Format::time_s), time_s, is_counted});
+    for (const auto& column : columns) {
+      added.bits.push_back(column ? std::min(row.bits[*column], unknown_bit) : unknown_bit);
+      unknown_bits_ += column && added.bits.back() == unknown_bit ? 1 : 0;
+    }
+    const std::size_t at = asked_.units.empty() ? 0 : first_place(time_s);
+    if (row.people >= 0 && at < asked_.units.n_rows)
+      counted[static_cast<std::size_t>(run.second - 1) * asked_.units.n_rows + at] = row.people;
   }
   repeated_.tell(faults_);
   faults_.throw_if_errors();
-  for (auto& [key, rows] : runs) add_run(key, std::move(rows), columns);
-  if (people_) reconcile::note_people(asked_, counted_, LogMap::People::count, measured_.notes);
+  for (const auto& [key, rows] : runs) add_run(key, rows);
+  if (format.has(Format::people)) note_people(asked_, counted, LogMap::People::count, measured_.notes);
   if (outside_ > 0) measured_.notes.push_back({DataNote::What::days_absent, outside_});
-  measured_.tells_phases = phase_.has_value();
-  if (!phase_ && !frame_.counted_phases.empty()) {
+  measured_.tells_phases = format.has(Format::phase);
+  if (!measured_.tells_phases && !frame_.counted_phases.empty()) {
     measured_.notes.push_back({DataNote::What::phases_unknown, frame_.counted_phases.size(), frame_.counted_phases});
   }
   if (inserted_rows_ > 0) {
@@ -229,25 +233,33 @@ void MeasuredReader::read_rows() {
   }
 }
 
-std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_of(std::size_t row) {
-  const auto trial = trial_of(row);
-  const auto time = number(row, *time_);
-  if (!time && table_.text(row, *time_).empty())
-    repeated_.add("no time", table_.where(row, *time_), "time_s: expected a number");
-  if (!trial || !time) return std::nullopt;
-  return std::pair{RunKey{*trial, replicate_of(row)}, *time};
+/// Each day of a dataset is a run of its script.
+int MeasuredReader::replicate_of(const Sample& row, const io::RowFormat& format) {
+  using Format = io::RowFormat;
+  if (format.has(Format::replicate) || !format.has(Format::day) || format.has(Format::trial)) return row.replicate;
+  const std::optional<int> day = io::parse_number<int>(row.trial);
+  if (!day) repeated_.add("day", format.where(Format::day), "day: expected a whole number, got '" + row.trial + "'");
+  return day.value_or(1);
+}
+
+MeasuredReader::Place MeasuredReader::place_of(const Sample& row, const io::RowFormat& format) {
+  const auto trial = format.has(io::RowFormat::trial)
+                         ? find(frame_.trials, "trial", row.trial, format.where(io::RowFormat::trial))
+                         : std::optional<std::size_t>(0);
+  if (!trial) return std::nullopt;
+  return std::pair{RunKey{*trial, replicate_of(row, format)}, row.time_s};
 }
 
 /// By its local time if it has one, or else by its number and second.
-std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_in_days(std::size_t row) {
+MeasuredReader::Place MeasuredReader::place_in_days(const Sample& row, const io::RowFormat& format) {
   const Units& units = asked_.units;
   const auto lasts_s = static_cast<double>(units.n_rows) * frame_.window_s;
-  if (!local_time_ || units.begins_s.empty()) {
-    auto place = place_of(row);
+  if (row.clock.empty() || units.begins_s.empty()) {
+    const Place place = place_of(row, format);
     if (!place) return std::nullopt;
     const int day = place->first.second;
     if (day < 1 || day > asked_.n_days()) {
-      repeated_.add("day", replicate_ ? table_.where(row, *replicate_) : Where{file_, 1, 1},
+      repeated_.add("day", format.where(io::RowFormat::replicate),
                     "run " + std::to_string(day) + ", but the script's occupancy has " +
                         plural(units.n_days, "day", "days") + ": a column 'time' tells which day a row is of");
       return std::nullopt;
@@ -255,17 +267,13 @@ std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_i
     if (place->second > lasts_s + 0.5 * frame_.window_s) return ++outside_, std::nullopt;
     return place;
   }
-  const std::optional<RunClock> clock = clock_from(table_.text(row, *local_time_));
-  if (!clock) {
-    repeated_.add("local time", table_.where(row, *local_time_), "time: expected a local time, 2026-03-02T07:00:30");
-    return std::nullopt;
-  }
+  const std::int64_t now_s = clock_from(row.clock)->begin_s;
   for (std::size_t day = 0; day < units.n_days; ++day) {
-    const auto time_s = static_cast<double>(clock->begin_s - units.begins_s[day]);
+    const auto time_s = static_cast<double>(now_s - units.begins_s[day]);
     if (time_s <= 0.0 || time_s > lasts_s) continue;
     const double windows = time_s / frame_.window_s;
     if (std::abs(windows - std::round(windows)) > 1e-3) {
-      repeated_.add("grid", table_.where(row, *local_time_),
+      repeated_.add("grid", format.where(io::RowFormat::time),
                     "this row ends within a window of the script, whose run begins at " +
                         RunClock{units.begins_s[day]}.text(0.0) +
                         ": give the log itself, or a script whose from or "
@@ -278,88 +286,41 @@ std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_i
   return std::nullopt;
 }
 
-void MeasuredReader::note_people(std::size_t row, const RunKey& run, double time_s) {
-  if (!people_ || asked_.units.empty()) return;
-  Diagnostics found;
-  const std::optional<int> people = table_.integer(row, *people_, found);
-  repeated_.add("people", found);
-  const std::size_t place = first_place(time_s);
-  if (people && place < asked_.units.n_rows)
-    counted_[static_cast<std::size_t>(run.second - 1) * asked_.units.n_rows + place] = *people;
-}
-
+/// Rows follow each other as the reader of rows wants it; their clock may say otherwise.
 bool MeasuredReader::check_times(const std::vector<Row>& rows) {
-  std::map<double, std::size_t> steps;  // how often rows are so far apart
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const double step = rows[i].time_s - rows[i - 1].time_s;
-    if (step <= 0.0) {
-      repeated_.add(
-          "order", table_.where(rows[i].line, *time_),
-          "time_s doesn't grow: " + io::csv_number(rows[i].time_s) + " after " + io::csv_number(rows[i - 1].time_s));
-      return false;
-    }
-    ++steps[std::round(step * 1e6) / 1e6];
-  }
   const double first_s = rows.front().time_s;
   if (frame_.counted_phases.empty() && !(first_s >= 0.0 && first_s <= most_missing_rows * frame_.window_s)) {
-    repeated_.add("begin", table_.where(rows.front().line, *time_),
+    repeated_.add("begin", rows.front().where,
                   "time_s counts from the beginning of the trial; this one " + std::string("begins with ") +
-                      io::csv_number(rows.front().time_s));
+                      io::csv_number(first_s));
     return false;
   }
-  if (steps.empty()) return true;
-  const auto usual = std::ranges::max_element(steps, {}, &std::pair<const double, std::size_t>::second);
-  if (std::abs(usual->first - frame_.window_s) > 1e-6 * frame_.window_s) {
-    repeated_.add("window", table_.where(rows.front().line, *time_),
-                  "rows are " + io::csv_number(usual->first) + " s apart, the script's window is " +
+  if (rows.size() > 1 && std::abs(step_s_ - frame_.window_s) > 1e-6 * frame_.window_s) {
+    repeated_.add("window", rows.front().where,
+                  "rows are " + io::csv_number(step_s_) + " s apart, the script's window is " +
                       io::csv_number(frame_.window_s) + " s");
     return false;
   }
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double windows = (rows[i].time_s - rows[i - 1].time_s) / frame_.window_s;
-    if (windows > most_missing_rows) {
-      repeated_.add(
-          "gap", table_.where(rows[i].line, *time_),
-          "this row comes " + io::csv_number(std::round(windows)) + " windows after the one before: too long a gap");
-      return false;
-    }
-    if (std::abs(windows - std::round(windows)) < 1e-3) continue;
-    repeated_.add("off", table_.where(rows[i].line, *time_),
-                  "this row isn't a whole number of windows after the one before");
+    if (windows > 0.5 && windows <= most_missing_rows) continue;
+    const bool is_gap = windows > 0.5;
+    repeated_.add(is_gap ? "gap" : "order", rows[i].where,
+                  is_gap ? "this row comes " + io::csv_number(std::round(windows)) +
+                               " windows after the one before: too long a gap"
+                         : "time doesn't grow: this row isn't later than the one before");
     return false;
   }
   return true;
 }
 
-std::vector<std::uint8_t> MeasuredReader::bits_of(std::size_t row,
-                                                  const std::vector<std::optional<std::size_t>>& columns) {
-  std::vector<std::uint8_t> bits;
-  for (const auto& column : columns) {
-    bits.push_back(unknown_bit);
-    if (!column) continue;
-    const std::string& text = table_.text(row, *column);
-    if (text == "0" || text == "0.0") {  // with the point, as tables are written that had a missing value once
-      bits.back() = 0;
-    } else if (text == "1" || text == "1.0") {
-      bits.back() = 1;
-    } else if (text.empty()) {
-      ++unknown_bits_;
-    } else {
-      repeated_.add("bit", table_.where(row, *column),
-                    table_.names()[*column] + ": expected 0 or 1, got '" + text + "'");
-    }
-  }
-  return bits;
-}
-
 void MeasuredReader::mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places) {
   const std::size_t n_rows = places.back() + 1;
   series.main_end = n_rows;
-  if (!phase_ || frame_.counted_phases.empty()) return;
+  if (!tells_phases_) return;
   bool begun = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::string& phase = table_.text(rows[i].line, *phase_);
-    if (std::ranges::find(frame_.counted_phases, phase) == frame_.counted_phases.end()) continue;
+    if (!rows[i].is_counted) continue;
     if (!begun) series.main_begin = places[i];
     begun = true;
     series.main_end = places[i] + 1;
@@ -376,9 +337,7 @@ std::size_t MeasuredReader::first_place(double time_s) const {
 /// Before gaps are filled, which a small file may have many of.
 void MeasuredReader::refuse_too_long(const std::vector<Row>& rows) {
   const double lasts_s = rows.back().time_s - rows.front().time_s;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorCode::input, table_.where(rows.back().line, *time_), why);
-  };
+  const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::input, rows.back().where, why); };
   if (lasts_s > limits::measured_run_s) {
     refuse("this run lasts " + fixed(lasts_s, 0) + " s; a simulated one lasts " + fixed(limits::measured_run_s, 0) +
            " s at most");
@@ -388,8 +347,7 @@ void MeasuredReader::refuse_too_long(const std::vector<Row>& rows) {
     refuse("up to here the data have more than " + std::to_string(limits::measured_rows) + " rows, gaps included");
 }
 
-void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
-                             const std::vector<std::optional<std::size_t>>& columns) {
+void MeasuredReader::add_run(RunKey key, const std::vector<Row>& rows) {
   if (!check_times(rows)) return;
   refuse_too_long(rows);
   Series series{key.first, key.second, 0, 0, {}};
@@ -402,8 +360,7 @@ void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
       series.bits.insert(series.bits.end(), frame_.sensors.size(), unknown_bit);
       ++inserted_rows_;
     }
-    const auto bits = bits_of(row.line, columns);
-    series.bits.insert(series.bits.end(), bits.begin(), bits.end());
+    series.bits.insert(series.bits.end(), row.bits.begin(), row.bits.end());
     places.push_back(place);
   }
   mark_main(series, rows, places);

@@ -5,12 +5,14 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "io/read/csv_reader.hpp"
+#include "io/read/row_reader.hpp"
 #include "pirsim/columns.hpp"
 #include "reconcile/data/measured.hpp"
 
@@ -18,56 +20,49 @@ namespace pirsim::reconcile {
 
 class MeasuredReader {
  public:
-  MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame);
+  MeasuredReader(std::string_view bytes, const std::string& file, const StudyFrame& frame);
   /// Throws Error(input) with every fault.
   [[nodiscard]] Measured read();
 
  private:
   using RunKey = std::pair<std::size_t, int>;  ///< trial, replicate
   struct Row {
-    std::size_t line = 0;  ///< row of the table
+    Where where;  ///< of its time
     double time_s = 0.0;
+    bool is_counted = true;  ///< by its phase
+    std::vector<std::uint8_t> bits{};
   };
+  using Place = std::optional<std::pair<RunKey, double>>;  ///< of a row: its run, and its second there
 
-  void read_sums();
-  void read_rows();
-  [[nodiscard]] std::vector<std::optional<std::size_t>> sensor_columns();
-  [[nodiscard]] std::optional<std::size_t> column_of(std::string_view name);
-  void refuse_unknown_columns(const std::vector<std::string>& sensors);
-  [[nodiscard]] std::optional<std::size_t> trial_of(std::size_t row);
-  [[nodiscard]] int replicate_of(std::size_t row);
-  [[nodiscard]] std::optional<double> number(std::size_t row, std::size_t column);
-  void refuse_too_many(const RunKey& run, std::size_t row);
-  void refuse_too_long(const std::vector<Row>& rows);
+  void read_sums(const io::CsvTable& table);
+  void read_rows(io::RowReader& reader);
+  void refuse_unknown_columns(const std::vector<std::string>& names, std::span<const ColumnInfo> columns);
+  [[nodiscard]] std::vector<std::optional<std::size_t>> sensor_columns(const std::vector<std::string>& names);
   [[nodiscard]] std::optional<std::size_t> find(const std::vector<std::string>& names, const std::string& what,
-                                                std::size_t row, std::size_t column);
+                                                const std::string& name, const Where& where);
+  void refuse_too_many(const RunKey& run, const Where& where);
+  void refuse_too_long(const std::vector<Row>& rows);
   [[nodiscard]] std::size_t first_place(double time_s) const;
-  void add_run(RunKey key, std::vector<Row> rows, const std::vector<std::optional<std::size_t>>& columns);
+  void add_run(RunKey key, const std::vector<Row>& rows);
   [[nodiscard]] bool check_times(const std::vector<Row>& rows);
-  [[nodiscard]] std::vector<std::uint8_t> bits_of(std::size_t row,
-                                                  const std::vector<std::optional<std::size_t>>& columns);
   void mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places);
   void number_runs();
   void refuse_too_little();
 
-  /// Of a row: its run, and its second there; none for one that no run has.
-  [[nodiscard]] std::optional<std::pair<RunKey, double>> place_of(std::size_t row);
-  [[nodiscard]] std::optional<std::pair<RunKey, double>> place_in_days(std::size_t row);
-  void note_people(std::size_t row, const RunKey& run, double time_s);
+  [[nodiscard]] int replicate_of(const Sample& row, const io::RowFormat& format);
+  [[nodiscard]] Place place_of(const Sample& row, const io::RowFormat& format);
+  [[nodiscard]] Place place_in_days(const Sample& row, const io::RowFormat& format);
 
   StudyFrame frame_;  ///< of whole runs
   const StudyFrame& asked_;
-  std::string file_;
-  io::CsvTable table_;
-  std::vector<ColumnInfo> columns_;  ///< that the table may have, beside the sensors'
+  std::string text_, file_;
   Diagnostics faults_;
   io::RepeatedFaults repeated_;
   Measured measured_;
-  std::optional<std::size_t> trial_, replicate_, phase_, time_;
+  bool tells_phases_ = false;  ///< that are counted
+  double step_s_ = 0.0;        ///< of the rows
   std::set<std::string> unknown_names_;
   std::map<std::size_t, std::set<int>> replicates_;  ///< of a trial
-  std::optional<std::size_t> local_time_, people_;   ///< columns that say something of days
-  std::vector<std::int32_t> counted_;                ///< (n_days x n_rows) people in the data, or -1
   std::size_t outside_ = 0;                          ///< rows
   std::size_t inserted_rows_ = 0, unknown_bits_ = 0, unread_runs_ = 0, filled_rows_ = 0;
 };
