@@ -16,13 +16,17 @@
 #include "pirsim/interval.hpp"
 #include "pirsim/sample.hpp"
 
+namespace pirsim {
+struct SceneSpec;
+}
+
 namespace pirsim::control {
 
 // The rule by which light is switched, as plain data.
 
 enum class Timer {
   restarts,  ///< every motion starts the delay anew
-  runs_out   ///< only the motion that follows the end of the delay does
+  runs_out   ///< only motion after the delay's end does, or in the very row in which it would go off
 };
 
 /// Several sensors have to report motion, at most so long after each other.
@@ -58,9 +62,11 @@ struct LightSpec {
   Timer timer = Timer::restarts;
   double least_on_min = 0.0;         ///< it is never lit for less
   std::string door;                  ///< motion while it is shut keeps the light on until it opens; empty: none
+  double settle_s = 10.0;            ///< after it was shut, motion may be of who went out (`assumed`; 0 to 30 tried)
   std::optional<NightSpec> night;    ///< by the rows' clock
-  double from_h = 0.0, to_h = 24.0;  ///< hours in which it is dark without light, by the rows' clock
+  double from_h = 0.0, to_h = 24.0;  ///< hours in which it is dark without light, by the rows' clock; as of a night
   double power_w = 0.0;              ///< 0: energy isn't told
+  double at_most_a_week = 1.0;       ///< so often it may go off on somebody (`assumed`; 0.1 to 14 tried), for advise()
   Where where;
   bool operator==(const LightSpec&) const = default;
 };
@@ -75,16 +81,24 @@ struct RuleSpec {
 [[nodiscard]] RuleSpec read_rule(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 [[nodiscard]] RuleSpec parse_rule(std::string_view text, const std::string& name);
 
+/// A light for each area of the scene, switched by the sensors that watch it; one for all without areas. Areas without
+/// sensors are remarks. Throws Error(input) if no area has one.
+[[nodiscard]] RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks);
+/// Gives each light of an area that names no sensors those that watch it. Throws as rule_of().
+void name_sensors(RuleSpec& rule, const SceneSpec& scene);
+
 // What it costs.
 
-/// Over some days: a number, and the middle 90 % of what days drawn with replacement give; none for less than three. Of
-/// events that never came, the interval ends at three in all hours: where a chance of 5 % remains to see none.
+/// Over some days: a number, NaN of nothing, and the middle 90 % of what days drawn with replacement give; none for
+/// less than three. Of events that never came, the interval ends at three in all hours: where a chance of 5 % remains
+/// to see none.
 struct Figure {
   double value = 0.0;
   std::optional<Interval> over_days{};
 };
 
-/// Of one light and one delay. What needs to know where people are is missing if the rows don't tell.
+/// Of one light and one delay. What needs to know where people are is NaN, and no false-offs are counted, if the rows
+/// don't tell.
 struct DelayCosts {
   double delay_min = 0.0;
   double lit_h = 0.0;  ///< in all
@@ -96,7 +110,7 @@ struct DelayCosts {
   Figure false_offs_an_hour;    ///< of occupied time
   Figure dark_share;            ///< of occupied time
   double longest_dark_s = 0.0;
-  double mean_wait_s = 0.0, longest_wait_s = 0.0;  ///< from coming into an empty area to light
+  double mean_wait_s = 0.0, longest_wait_s = 0.0;  ///< from coming into an empty area to light; NaN: nobody came
 };
 
 /// Somebody was in the dark.
@@ -117,16 +131,35 @@ struct LightCosts {
   std::vector<double> rule_delays_min;
   People people = People::known;
   std::int64_t days = 0;
+  /// What "a day" divides by: days less what isn't known of them, a run of more than 24 h by its hours.
+  double known_days = 0.0;
   double hours = 0.0;  ///< that count: of rows in which all of its sensors are known
   double unknown_h = 0.0;
-  double occupied_h = 0.0;
-  double span_h = 0.0;  ///< from a day's first person to its last: who switches by hand, and not between
+  double occupied_h = 0.0;  ///< NaN, as the next one, if the rows have no people
+  double span_h = 0.0;      ///< from a day's first person to its last: who switches by hand, and not between
   double power_w = 0.0;
+  double at_most_a_week = 1.0;       ///< as the rule has it
   std::vector<DelayCosts> by_delay;  ///< in order: every minute up to an hour, and the rule's
   std::vector<DarkSpell> worst;      ///< of the first delay, the longest first; ten at most
 
   [[nodiscard]] const DelayCosts& at(double delay_min) const;  ///< of one that is there
+  [[nodiscard]] double a_day(double sum) const;                ///< 0 where nothing is known
 };
+
+/// The shortest delay from which on a light goes off on somebody less often than the rule allows.
+struct Advice {
+  enum class Ground {
+    shown,           ///< the upper end of the rate is below it too (95 %; over days, and by Poisson's law)
+    too_few_days,    ///< the rate alone is: the best guess
+    no_delay,        ///< of those tried is long enough
+    nobody_came,     ///< or nothing is known
+    unknown_people,  ///< the rows don't tell
+  };
+  Ground ground = Ground::nobody_came;
+  std::optional<double> delay_min{};  ///< of the first two
+  std::string sentence;               ///< which delay to take and what it costs, or why that can't be told
+};
+[[nodiscard]] Advice advise(const LightCosts& light);
 
 struct Costs {
   std::string rule;
@@ -139,13 +172,14 @@ struct Costs {
 struct LitRow {
   std::span<const std::uint8_t> lit;     ///< (n_lights) 0 or 1; 2: its sensors aren't known
   std::span<const std::int32_t> people;  ///< (n_lights) of its area, -1: not known
+  std::optional<std::int64_t> ends_s{};  ///< by the rows' clock, since 1970-01-01T00:00
 };
 
 /// Switches lights row by row. Memory grows with the number of days alone.
 class Control {
  public:
   /// columns: what the rows have. people: whether they tell it. Throws Error(input) for sensors, areas and doors that
-  /// the rows don't have, and for a rule that asks for more sensors than a light has.
+  /// the rows don't have, for a rule that asks for more sensors than a light has, and for one by people without such.
   Control(RuleSpec rule, ColumnOwners columns, double window_s, People people = People::known);
   ~Control();
   Control(Control&&) noexcept;
@@ -154,7 +188,7 @@ class Control {
   void begin_run() noexcept;
   /// In order of time. A bit of 2 isn't known, people of -1 neither; a light that goes by what the row's room hasn't
   /// got (bits of 3, people of -2) isn't in that room. A new replicate or trial begins in the dark. day: what intervals
-  /// are over; a run if it is empty.
+  /// are over; a run if it is empty. Throws Error(input) for a clock that tells no time.
   LitRow add(const Sample& row, std::string_view day = {});
   [[nodiscard]] Costs finish() const;
 

@@ -31,54 +31,23 @@ struct ControlOptions {
   Inputs inputs;  ///< of the scene
   std::filesystem::path rule, output, report, light, schedule;
   std::vector<double> delays_min;
-  std::optional<double> window_s;
+  std::optional<double> window_s, at_most_a_week;
   int schedule_min = 15;
 };
 
-/// A light for each area of the scene, switched by the sensors that watch it; one for all without areas.
-control::RuleSpec rule_of_scene(const ControlOptions& options, std::vector<Issue>& remarks) {
-  control::RuleSpec rule;
-  rule.name = options.inputs.scene.empty() ? "any sensor" : io::stem_of_input(options.inputs.scene);
-  if (options.inputs.scene.empty()) {
-    rule.lights.emplace_back();
-    return rule;
-  }
-  const SceneSpec scene = read_scene(options.inputs);
-  const Areas areas(scene);
-  if (areas.empty()) rule.lights.emplace_back();
-  for (std::size_t area = 0; area < areas.size(); ++area) {
-    control::LightSpec light;
-    light.id = light.area = areas.names()[area];
-    for (const std::size_t sensor : areas.sensors_of(area)) light.sensors.push_back(scene.sensors[sensor].id);
-    if (!light.sensors.empty()) {
-      rule.lights.push_back(std::move(light));
-    } else {
-      remarks.push_back({Severity::warning,
-                         {scene.name},
-                         "the area '" + light.id + "' has no sensor that could switch a light: it is left out"});
-    }
-  }
-  if (rule.lights.empty())
-    throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
-  return rule;
-}
-
-/// Sensors that watch its area, for each light that names none.
-void complete(control::RuleSpec& rule, const ControlOptions& options) {
-  if (options.inputs.scene.empty()) return;
-  std::vector<Issue> left_out;  // areas without sensors: told where the light stays without
-  const control::RuleSpec of_scene = rule_of_scene(options, left_out);
-  for (control::LightSpec& light : rule.lights) {
-    const auto same = std::ranges::find(of_scene.lights, light.area, &control::LightSpec::area);
-    if (light.sensors.empty() && !light.area.empty() && same != of_scene.lights.end()) light.sensors = same->sensors;
-  }
-}
-
 control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& remarks) {
-  control::RuleSpec rule = options.rule.empty() ? rule_of_scene(options, remarks) : control::read_rule(options.rule);
-  if (!options.rule.empty()) complete(rule, options);
+  control::RuleSpec rule{"any sensor", {{}}};
+  std::optional<SceneSpec> scene;
+  if (!options.inputs.scene.empty()) scene = read_scene(options.inputs);
+  if (!options.rule.empty()) {
+    rule = control::read_rule(options.rule);
+    if (scene) control::name_sensors(rule, *scene);
+  } else if (scene) {
+    rule = control::rule_of(*scene, io::stem_of_input(options.inputs.scene), remarks);
+  }
   for (control::LightSpec& light : rule.lights) {
     if (!options.delays_min.empty()) light.delays_min = options.delays_min;
+    light.at_most_a_week = options.at_most_a_week.value_or(light.at_most_a_week);
   }
   return rule;
 }
@@ -126,21 +95,27 @@ class Outputs {
       lit_data_.emplace(lit_file_->stream(), io::compression_of(options.light));
       lit_.emplace(lit_text_, rule);
     }
-    if (!options.schedule.empty()) schedule_.emplace(rule, about.window_s, options.schedule_min);
+    if (!options.schedule.empty()) schedule_.emplace(rule, about.window_s, options.schedule_min, about.people);
   }
 
   void begin_run() noexcept { control_.begin_run(); }
   void add(const Sample& row, std::string_view day) {
     const control::LitRow lit = control_.add(row, day);
     days_.add(row, lit);
-    if (schedule_) schedule_->add(row, lit);
+    if (schedule_) schedule_->add(lit);
     if (!lit_) return;
     lit_->add(row, lit);
     constexpr std::streamoff piece = 1 << 16;
     if (lit_text_.tellp() > piece) flush();
   }
 
-  [[nodiscard]] control::Costs costs() const { return control_.finish(); }
+  [[nodiscard]] control::Costs costs() const {
+    control::Costs costs = control_.finish();
+    if (!schedule_) return costs;
+    const std::vector<Issue> remarks = schedule_->remarks();
+    costs.remarks.insert(costs.remarks.end(), remarks.begin(), remarks.end());
+    return costs;
+  }
   [[nodiscard]] const control::LitDays& days() const noexcept { return days_; }
 
   void finish(const ControlOptions& options) {
@@ -235,6 +210,10 @@ void check_files(const ControlOptions& options) {
   keep_inputs(outputs, read);
   if (options.rows.empty() == options.log.files.empty())
     throw Error(ErrorCode::usage, "say which rows: files of runs, a dataset's folder, or --log");
+  for (auto delay = options.delays_min.begin(); delay != options.delays_min.end(); ++delay) {
+    if (std::find(options.delays_min.begin(), delay, *delay) != delay)
+      throw Error(ErrorCode::usage, "--delay: " + shortest_number(*delay) + " is given twice");
+  }
   if (options.schedule_min < 1 || 60 % options.schedule_min != 0)
     throw Error(ErrorCode::usage, "--schedule-minutes: expected a divisor of 60");
 }
@@ -268,6 +247,12 @@ void add_control_command(CLI::App& app) {
       .add_option("--delay", options->delays_min, "instead of the rule's; several: the first is the one that counts")
       ->option_text("MINUTES...")
       ->check(CLI::Range(0.0, 1440.0));
+  command
+      .add_option(
+          "--at-most", options->at_most_a_week,
+          "so often a week the light may go off on somebody: which delay is told to be long enough (default: 1)")
+      ->option_text("TIMES")
+      ->check(CLI::Range(1e-3, 1e4));
   Inputs& inputs = options->inputs;
   offer_input_file(command, "--scene", inputs.scene,
                    "its areas' sensors: of a rule's lights, or of one for each area; .gltf or .glb");

@@ -17,6 +17,7 @@ namespace {
 
 constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
+constexpr std::int64_t day_s = 86400;
 
 /// Minutes, in order: those of the curve and the rule's.
 std::vector<double> delays_of(const LightSpec& light) {
@@ -66,11 +67,12 @@ Columns columns_for(const LightSpec& light, const ColumnOwners& owners, Diagnost
   return columns;
 }
 
-/// Hours of the day at the end of a row; none without a clock.
-std::optional<double> hour_of(const Sample& row) {
-  if (row.clock.size() < 19) return std::nullopt;
-  const auto digits = [&](std::size_t at) { return 10 * (row.clock[at] - '0') + (row.clock[at + 1] - '0'); };
-  return digits(11) + digits(14) / 60.0 + digits(17) / 3600.0;
+/// At the end of a row, since 1970; none without a clock.
+std::optional<std::int64_t> clock_s(const Sample& row) {
+  if (row.clock.empty()) return std::nullopt;
+  constexpr std::size_t whole_seconds = 19;
+  if (const auto clock = clock_from(row.clock.substr(0, whole_seconds))) return clock->begin_s;
+  throw Error(ErrorCode::input, "the time '" + row.clock + "' of a row is none: expected one like 2026-03-02T08:30:00");
 }
 
 /// Does a row that ends at this hour lie between them? At midnight it is the end of the day before.
@@ -91,6 +93,7 @@ class Light {
     for (const double delay_min : delays_min_) delay_rows_.push_back(rows_of(60.0 * delay_min));
     if (spec.night) night_rows_ = rows_of(60.0 * spec.night->delay_min);
     if (spec.together) together_rows_ = rows_of(spec.together->within_s);
+    settle_rows_ = 1 + static_cast<std::int64_t>(std::ceil(spec.settle_s / window_s));
     chosen_ = static_cast<std::size_t>(std::ranges::find(delays_min_, spec.delays_min.front()) - delays_min_.begin());
     waits_.resize(delays_min_.size());
     longest_dark_.resize(delays_min_.size(), 0);
@@ -101,43 +104,44 @@ class Light {
   void begin() {
     switches_.assign(delays_min_.size(), {});
     last_motion_.assign(columns_.sensors.size(), never);
+    last_behind_ = last_motion_;
+    is_on_.assign(columns_.sensors.size(), true);  // since before, if it is in the first row
+    began_behind_.assign(columns_.sensors.size(), false);
     row_ = gap_rows_ = 0;
+    open_at_ = -1;  // shut when the run began, if it is shut at all
     begin_people();
   }
-  void begin_day() {
-    days_.emplace_back().by_delay.resize(delays_min_.size());
-    day_row_ = 0;
-  }
+  void begin_day() { days_.emplace_back().by_delay.resize(delays_min_.size()); }
 
-  /// 0, 1, or 2 where not known.
-  std::uint8_t add(const Sample& row, int people) {
-    ++row_, ++day_row_;
+  /// 0, 1, or 2 where not known. hour: of the day at its end.
+  std::uint8_t add(const Sample& row, int people, std::optional<double> hour) {
+    ++row_;
     DaySums& day = days_.back();
     if (!is_here(row, people)) return unknown_bit;
-    const std::optional<double> hour = hour_of(row);
+    ++day.all;
     if (hour && !is_between(*hour, spec_.from_h, spec_.to_h)) {  // light from outside
       begin();
       return 0;
     }
-    const std::optional<Cue> cue = cue_of(row, people);
-    if (!cue || people < 0) {
+    const auto [cue, is_known] = cue_of(row, people);
+    gap_rows_ = is_known ? 0 : gap_rows_ + 1;
+    if (!is_known || people < 0) {
       ++day.unknown;
       pass(cue, is_night(hour));
       return unknown_bit;
     }
-    gap_rows_ = 0;
     ++day.rows;
-    if (cue->occupied) {
+    if (cue.occupied) {
       ++day.occupied;
-      if (day.first_occupied < 0) day.first_occupied = day_row_;
-      day.last_occupied = day_row_;
+      if (day.first_occupied < 0) day.first_occupied = day.rows;
+      day.last_occupied = day.rows;
     }
-    const bool comes = cue->occupied && !was_occupied_;
+    const bool comes = cue.occupied && !was_occupied_;
     for (std::size_t i = 0; i < switches_.size(); ++i)
-      step(i, *cue, delay_of(i, is_night(hour)), comes, day.by_delay[i]);
-    was_occupied_ = cue->occupied;
+      step(i, cue, delay_of(i, is_night(hour)), comes, day.by_delay[i]);
+    was_occupied_ = cue.occupied;
     const bool is_lit = switches_[chosen_].is_lit();
-    note_spell(row, cue->occupied && !is_lit);
+    note_spell(row, cue.occupied && !is_lit);
     return is_lit ? 1 : 0;
   }
 
@@ -184,39 +188,52 @@ class Light {
 
   /// A row that isn't counted. Where the sensors aren't known the light goes on as if nothing moved, and anew once that
   /// lasts longer than the delay.
-  void pass(const std::optional<Cue>& cue, bool is_night) {
-    gap_rows_ = cue ? 0 : gap_rows_ + 1;
+  void pass(const Cue& cue, bool is_night) {
     if (gap_rows_ > std::max(delay_rows_.back(), night_rows_) + 1) return;  // all has begun anew
     for (std::size_t i = 0; i < switches_.size(); ++i) {
       const std::int64_t delay_rows = delay_of(i, is_night);
       if (gap_rows_ > delay_rows)
         switches_[i] = {};
       else
-        switches_[i].advance(rule_, cue.value_or(Cue{}), delay_rows);
+        switches_[i].advance(rule_, cue, delay_rows);
     }
     begin_people();
   }
 
   [[nodiscard]] std::int64_t rows_of(double seconds) const { return std::llround(seconds / window_s_); }
 
-  /// None where a sensor isn't known.
-  std::optional<Cue> cue_of(const Sample& row, int people) {
-    int n_moved = 0;
-    bool is_known = !columns_.door || row.doors[*columns_.door] != unknown_bit;
+  struct Reading {
+    Cue cue;
+    bool is_known = true;  ///< all sensors are, and the door; else nothing moves
+  };
+  Reading cue_of(const Sample& row, int people) {
+    Reading reading;
+    Cue& cue = reading.cue;
+    cue.occupied = people > 0;
+    cue.is_open = !columns_.door || row.doors[*columns_.door] != 0;
+    reading.is_known = !columns_.door || row.doors[*columns_.door] != unknown_bit;
+    if (cue.is_open) open_at_ = row_;
     for (std::size_t i = 0; i < columns_.sensors.size(); ++i) {
       const std::uint8_t bit = row.bits[columns_.sensors[i]];
-      if (bit == 1) last_motion_[i] = row_;
-      is_known = is_known && bit != unknown_bit;
-      n_moved += row_ - last_motion_[i] <= together_rows_;
+      reading.is_known = reading.is_known && bit != unknown_bit;
+      // A pulse that began before the door had settled may hold for minutes after whoever made it went out.
+      if (bit != 0 && !is_on_[i] && row_ - open_at_ > settle_rows_) began_behind_[i] = true;
+      if (bit == 0 || cue.is_open) began_behind_[i] = false;
+      is_on_[i] = bit != 0;
+      if (bit != 1) continue;
+      last_motion_[i] = row_;
+      if (began_behind_[i]) last_behind_[i] = row_;
     }
-    // Motion that was together starts nothing anew while nobody moves on.
-    const bool moves = std::ranges::any_of(last_motion_, [&](std::int64_t last) { return last == row_; });
-    if (!is_known) return std::nullopt;
-    Cue cue;
-    cue.moved = moves && n_moved >= (spec_.together ? spec_.together->sensors : 1);
-    cue.occupied = people > 0;
-    cue.is_open = columns_.door && row.doors[*columns_.door] != 0;
-    return cue;
+    cue.moved = reading.is_known && is_enough(last_motion_);
+    cue.is_behind = reading.is_known && is_enough(last_behind_);
+    return reading;
+  }
+
+  /// Of as many sensors as have to. Motion that was together starts nothing anew while nobody moves on.
+  [[nodiscard]] bool is_enough(const std::vector<std::int64_t>& last_rows) const {
+    const auto moved = std::ranges::count_if(last_rows, [&](std::int64_t l) { return row_ - l <= together_rows_; });
+    return moved >= (spec_.together ? spec_.together->sensors : 1) &&
+           std::ranges::find(last_rows, row_) != last_rows.end();
   }
 
   void step(std::size_t i, const Cue& cue, std::int64_t delay_rows, bool comes, DelaySums& sums) {
@@ -270,12 +287,15 @@ class Light {
   std::vector<double> delays_min_;
   std::vector<std::int64_t> delay_rows_;
   std::int64_t night_rows_ = 0, together_rows_ = 0;
-  std::size_t chosen_ = 0;  ///< of the delays
+  std::int64_t settle_rows_ = 0;  ///< from the last one that its door was open in: it shuts in the next
+  std::size_t chosen_ = 0;        ///< of the delays
   std::vector<LightSwitch> switches_;
-  std::vector<std::int64_t> entered_, dark_for_, last_motion_;
+  std::vector<std::int64_t> entered_, dark_for_;
+  std::vector<std::int64_t> last_motion_, last_behind_;  ///< (n_sensors) rows; behind: that began behind the shut door
+  std::vector<bool> is_on_, began_behind_;               ///< (n_sensors) the bit, or it isn't known; its pulse
+  std::int64_t open_at_ = -1;                            ///< the last row in which its door was open
   bool was_occupied_ = true;
   std::int64_t row_ = 0, gap_rows_ = 0;  ///< gap: rows of which nothing is known, up to now
-  std::int32_t day_row_ = 0;
   std::vector<DaySums> days_;
   std::vector<Waits> waits_;
   std::vector<std::int64_t> longest_dark_;
@@ -292,6 +312,7 @@ LightCosts Light::costs(People people) const {
   costs.rule_delays_min = spec_.delays_min;
   costs.people = people;
   costs.power_w = spec_.power_w;
+  costs.at_most_a_week = spec_.at_most_a_week;
   costs.worst = worst_;
   if (spell_) {
     Light ended = *this;  // a spell that the rows break off
@@ -311,9 +332,13 @@ LightCosts Light::costs(People people) const {
     costs.hours += hours.back();
     costs.occupied_h += occupied.back();
     costs.span_h += day->span() * row_h;
+    costs.known_days += std::max(1.0, day->all * row_h / 24.0) * day->rows / (day->rows + day->unknown);
   }
+  const bool knows = people == People::known;
+  const auto if_known = [knows](double value) { return knows ? value : std::nan(""); };
+  if (!knows) occupied.assign(occupied.size(), 0.0);
+  costs.occupied_h = if_known(costs.occupied_h), costs.span_h = if_known(costs.span_h);
   const DrawnDays drawn(days.size());
-  const double n_days = std::max(1.0, static_cast<double>(days.size()));
   for (std::size_t i = 0; i < delays_min_.size(); ++i) {
     DelayCosts& at = costs.by_delay.emplace_back();
     at.delay_min = delays_min_[i];
@@ -330,14 +355,16 @@ LightCosts Light::costs(People people) const {
       at.false_offs += sums.false_offs;
       switched_on += sums.switched_on;
     }
-    at.switched_on_a_day = switched_on / n_days;
+    at.lit_empty_h = if_known(at.lit_empty_h), at.dark_h = if_known(at.dark_h);
+    at.switched_on_a_day = costs.a_day(switched_on);
     at.lit_share = drawn.ratio(lit, hours);
     at.false_offs_an_hour = drawn.rate(offs, occupied);
     at.dark_share = drawn.ratio(dark, occupied);
-    at.longest_dark_s = static_cast<double>(longest_dark_[i]) * window_s_;
+    at.longest_dark_s = if_known(static_cast<double>(longest_dark_[i]) * window_s_);
     const Waits& waits = waits_[i];
-    at.mean_wait_s = waits.n > 0 ? static_cast<double>(waits.rows) / static_cast<double>(waits.n) * window_s_ : 0.0;
-    at.longest_wait_s = static_cast<double>(waits.longest) * window_s_;
+    const double each_s = waits.n > 0 ? window_s_ / static_cast<double>(waits.n) : std::nan("");
+    at.mean_wait_s = static_cast<double>(waits.rows) * each_s;
+    at.longest_wait_s = waits.n > 0 ? static_cast<double>(waits.longest) * window_s_ : std::nan("");
   }
   return costs;
 }
@@ -350,6 +377,8 @@ const DelayCosts& LightCosts::at(double delay_min) const {
     throw Error(ErrorCode::usage, "light '" + id + "': no delay of " + std::to_string(delay_min) + " min");
   return *found;
 }
+
+double LightCosts::a_day(double sum) const { return known_days > 0.0 ? sum / known_days : 0.0; }
 
 struct Control::State {
   RuleSpec rule;
@@ -370,6 +399,10 @@ Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People pe
   if (!(window_s > 0.0)) faults.error({state_->rule.name}, "expected rows of more than 0 s");
   for (const LightSpec& light : state_->rule.lights) {
     Columns own = columns_for(light, columns, faults);
+    if (people == People::unknown && (light.manual || light.wave_s)) {
+      faults.error(light.where, "light '" + light.id + "': " + (light.manual ? "manual" : "wave_s") +
+                                    " goes by who is in the dark, and the rows have no people");
+    }
     if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s);
   }
   faults.throw_if_errors();
@@ -391,19 +424,31 @@ LitRow Control::add(const Sample& row, std::string_view day) {
       light.begin_day();
     }
   }
-  state.has_clock = state.has_clock || !row.clock.empty();
+  const std::optional<std::int64_t> ends_s = clock_s(row);
+  std::optional<double> hour;
+  if (ends_s) hour = static_cast<double>(((*ends_s % day_s) + day_s) % day_s) / 3600.0;
+  state.has_clock = state.has_clock || ends_s;
   for (std::size_t i = 0; i < state.lights.size(); ++i) {
     const int people = state.people == People::known ? state.lights[i].people_of(row) : 0;
-    state.lit[i] = state.lights[i].add(row, people);
+    state.lit[i] = state.lights[i].add(row, people, hour);
     state.people_of[i] = state.people == People::known ? people : -1;
   }
-  return {state.lit, state.people_of};
+  return {state.lit, state.people_of, ends_s};
 }
 
 Costs Control::finish() const {
   Costs costs{state_->rule.name, state_->window_s, {}, {}};
   for (const Light& light : state_->lights) costs.lights.push_back(light.costs(state_->people));
   for (const LightSpec& light : state_->rule.lights) {
+    for (const double delay_min : light.delays_min) {
+      const double in_rows =
+          static_cast<double>(std::llround(60.0 * delay_min / state_->window_s)) * state_->window_s / 60.0;
+      if (std::abs(in_rows - delay_min) < 1e-6) continue;
+      costs.remarks.push_back({Severity::warning, light.where,
+                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) +
+                                   " s a delay of " + shortest_number(delay_min) + " min is one of " +
+                                   shortest_number(in_rows) + " min"});
+    }
     const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
     if (wants_clock && !state_->has_clock) {
       costs.remarks.push_back(

@@ -25,7 +25,7 @@ DrawnDays::DrawnDays(std::size_t n_days) : n_days_(n_days) {
 
 Figure DrawnDays::ratio(const std::vector<double>& above, const std::vector<double>& below) const {
   const double all = std::accumulate(below.begin(), below.end(), 0.0);
-  if (all <= 0.0) return {};
+  if (!(all > 0.0)) return {std::nan(""), {}};
   Figure figure{std::accumulate(above.begin(), above.end(), 0.0) / all, {}};
   if (figure.value == 0.0) return figure;
   std::vector<double> ratios;

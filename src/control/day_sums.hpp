@@ -15,8 +15,8 @@ struct DelaySums {
 
 /// Of one day.
 struct DaySums {
-  std::int32_t rows = 0, unknown = 0, occupied = 0;
-  std::int32_t first_occupied = -1, last_occupied = -1;  ///< rows; -1: nobody came
+  std::int32_t all = 0, rows = 0, unknown = 0, occupied = 0;  ///< all: by daylight too; rows: that count
+  std::int32_t first_occupied = -1, last_occupied = -1;       ///< of the rows that count; -1: nobody came
   std::vector<DelaySums> by_delay;
   [[nodiscard]] std::int32_t span() const { return first_occupied < 0 ? 0 : last_occupied - first_occupied + 1; }
 };
@@ -25,8 +25,8 @@ struct DaySums {
 class DrawnDays {
  public:
   explicit DrawnDays(std::size_t n_days);
-  /// The sum of `above` over that of `below`, 0 without any of that. (n_days) each. No interval if all of `above` is 0:
-  /// draws of it are 0, too.
+  /// The sum of `above` over that of `below`, NaN without any of that. (n_days) each. No interval if all of `above` is
+  /// 0: draws of it are 0, too.
   [[nodiscard]] Figure ratio(const std::vector<double>& above, const std::vector<double>& below) const;
   /// Events an hour, as ratio(). Without events its interval ends where a chance of 5 % remains to see none, if they
   /// come independently of each other: at 3 in all hours [Hanley1983].

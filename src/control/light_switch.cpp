@@ -4,17 +4,8 @@
 
 namespace pirsim::control {
 
-namespace {
-
-constexpr double settle_s = 10.0;  // assumed (0-30 s)
-
-}  // namespace
-
 SwitchRule::SwitchRule(const LightSpec& light, double window_s)
-    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)),
-      timer(light.timer),
-      has_door(!light.door.empty()) {
-  settle_rows = std::llround(settle_s / window_s);
+    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)), timer(light.timer) {
   if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
   if (!light.manual) return;
   switch_rows = std::llround(light.manual->switch_s / window_s);
@@ -39,17 +30,14 @@ bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
 
 void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows) {
   ++row_;
-  if (rule.has_door) {
-    if (cue.is_open && latched_) counted_from_ = row_;
-    if (cue.is_open) open_at_ = row_;
-    const bool somebody_is_in = cue.moved && row_ - open_at_ > rule.settle_rows;
-    latched_ = !cue.is_open && (latched_ || somebody_is_in);
-  }
+  if (cue.is_open && latched_) counted_from_ = row_;
+  latched_ = !cue.is_open && (latched_ || cue.is_behind);
   if (!lit_) {
     if (goes_on(rule, cue)) go_on();
     return;
   }
-  if (cue.moved && rule.timer == Timer::restarts) counted_from_ = row_;
+  const bool is_over = row_ - counted_from_ > delay_rows;
+  if (cue.moved && (rule.timer == Timer::restarts || is_over)) counted_from_ = row_;
   if (latched_ || row_ - counted_from_ <= delay_rows || row_ - since_ < rule.least_on_rows) return;
   lit_ = false;
   since_ = row_;

@@ -9,9 +9,10 @@ namespace pirsim::control {
 
 /// What a light goes by in one row.
 struct Cue {
-  bool moved = false;     ///< as many of its sensors as have to report motion
-  bool occupied = false;  ///< somebody is in its area
-  bool is_open = false;   ///< its door
+  bool moved = false;      ///< as many of its sensors as have to report motion
+  bool occupied = false;   ///< somebody is in its area
+  bool is_open = false;    ///< its door
+  bool is_behind = false;  ///< what moved began to do so behind the shut door: nobody can have left
 };
 
 /// A rule in rows.
@@ -21,9 +22,7 @@ struct SwitchRule {
   std::optional<std::int64_t> switch_rows{};  ///< none: motion switches it on
   std::optional<std::int64_t> wave_rows{};    ///< in the dark, until who is there has waved; none: nobody waves
   std::int64_t grace_rows = 0, least_on_rows = 0;
-  std::int64_t settle_rows = 0;  ///< after its door was shut, motion may still be of who went out
   Timer timer = Timer::restarts;
-  bool has_door = false;
 };
 
 /// A value.
@@ -45,7 +44,6 @@ class LightSwitch {
   bool lit_ = false;
   bool latched_ = false;  ///< by motion behind a shut door
   std::int64_t row_ = 0;
-  std::int64_t open_at_ = 0;       ///< the last row in which its door was open
   std::int64_t since_ = 0;         ///< lit since this row, or dark
   std::int64_t counted_from_ = 0;  ///< of the delay
   std::int64_t waits_ = 0;         ///< rows in which somebody was in the dark without having used the switch, or waved

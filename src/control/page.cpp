@@ -22,9 +22,8 @@ std::string range(const Figure& figure, double scale, int digits) {
 std::string time(double seconds) {
   return seconds < 120.0 ? fixed(seconds, 0) + " s" : fixed(seconds / 60.0, seconds < 6000.0 ? 1 : 0) + " min";
 }
-double a_day(const LightCosts& light, double hours) {
-  return hours / std::max<double>(1.0, static_cast<double>(light.days));
-}
+/// A dash for what isn't known.
+std::string told(double value, int digits) { return std::isnan(value) ? "-" : fixed(value, digits); }
 
 /// Its delays that a table tells.
 std::vector<double> told_delays(const LightCosts& light) {
@@ -36,7 +35,7 @@ std::vector<double> told_delays(const LightCosts& light) {
 }
 
 std::string energy(const LightCosts& light, double hours) {
-  return light.power_w > 0.0 ? fixed(a_day(light, hours) * light.power_w / 1000.0, 2) : "";
+  return light.power_w > 0.0 ? fixed(light.a_day(hours) * light.power_w / 1000.0, 2) : "";
 }
 
 /// One line of a light's table; what isn't known, or means nothing there, is no text.
@@ -65,14 +64,14 @@ io::Table table_of(const LightCosts& light) {
     const DelayCosts& at = light.at(delay);
     add(table, light,
         {shortest_number(delay), std::to_string(at.false_offs),
-         fixed(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
-         fixed(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s),
-         fixed(a_day(light, at.lit_h), 2), fixed(a_day(light, at.lit_empty_h), 2), fixed(at.switched_on_a_day, 1),
-         time(at.mean_wait_s), energy(light, at.lit_h)});
+         told(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
+         told(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s),
+         fixed(light.a_day(at.lit_h), 2), fixed(light.a_day(at.lit_empty_h), 2), fixed(at.switched_on_a_day, 1),
+         std::isnan(at.mean_wait_s) ? "-" : time(at.mean_wait_s), energy(light, at.lit_h)});
   }
   const auto compare = [&](const std::string& name, double hours) {
     add(table, light,
-        {name, "", "", "", "", fixed(a_day(light, hours), 2), fixed(a_day(light, hours - light.occupied_h), 2), "", "",
+        {name, "", "", "", "", fixed(light.a_day(hours), 2), fixed(light.a_day(hours - light.occupied_h), 2), "", "",
          energy(light, hours)});
   };
   compare("always on", light.hours);
@@ -120,22 +119,22 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
     if (figure.over_days) point.low = scale * figure.over_days->low, point.high = scale * figure.over_days->high;
     return point;
   };
-  if (light.people == People::known) {
+  if (light.occupied_h > 0.0) {
     charts.emplace_back(
         chart("How often it goes off on somebody", "times an occupied hour",
               {curve(light, light.id, [&](const DelayCosts& at) { return of(at, at.false_offs_an_hour, 1.0); })}));
   }
   const auto flat = [&](const std::string& name, double hours) {
     return curve(light, name, [&, hours](const DelayCosts& at) {
-      return io::LineChart::Point{at.delay_min, a_day(light, hours), {}, {}};
+      return io::LineChart::Point{at.delay_min, light.a_day(hours), {}, {}};
     });
   };
   std::vector<Line> lines{curve(light, "lit", [&](const DelayCosts& at) {
-    return io::LineChart::Point{at.delay_min, a_day(light, at.lit_h), {}, {}};
+    return io::LineChart::Point{at.delay_min, light.a_day(at.lit_h), {}, {}};
   })};
   if (light.people == People::known) {
     lines.push_back(curve(light, "lit and empty", [&](const DelayCosts& at) {
-      return io::LineChart::Point{at.delay_min, a_day(light, at.lit_empty_h), {}, {}};
+      return io::LineChart::Point{at.delay_min, light.a_day(at.lit_empty_h), {}, {}};
     }));
     lines.push_back(flat("first in, last out", light.span_h));
     lines.push_back(flat("ideal", light.occupied_h));
@@ -184,23 +183,19 @@ io::ReportSection worst_section(const LightCosts& light, const std::string& view
 
 /// Of one light, or of several together, by their first delays.
 struct Sums {
-  double occupied_h = 0.0, dark_h = 0.0, lit_h = 0.0, lit_empty_h = 0.0, days = 0.0;
+  double occupied_h = 0.0, dark_h = 0.0, lit_a_day = 0.0, empty_a_day = 0.0;
   std::int64_t false_offs = 0;
 
   void add(const LightCosts& light) {
     const DelayCosts& at = light.at(light.rule_delays_min.front());
     occupied_h += light.occupied_h;
     dark_h += at.dark_h;
-    lit_h += at.lit_h;
-    lit_empty_h += at.lit_empty_h;
+    lit_a_day += light.a_day(at.lit_h);
+    empty_a_day += light.a_day(at.lit_empty_h);
     false_offs += at.false_offs;
-    days = std::max(days, static_cast<double>(light.days));
   }
-  [[nodiscard]] double offs_an_hour() const {
-    return occupied_h > 0.0 ? static_cast<double>(false_offs) / occupied_h : 0.0;
-  }
-  [[nodiscard]] double dark_share() const { return occupied_h > 0.0 ? dark_h / occupied_h : 0.0; }
-  [[nodiscard]] double a_day(double hours) const { return hours / std::max(1.0, days); }
+  [[nodiscard]] double offs_an_hour() const { return static_cast<double>(false_offs) / occupied_h; }
+  [[nodiscard]] double dark_share() const { return dark_h / occupied_h; }
 };
 
 bool know_people(const Costs& costs) {
@@ -218,19 +213,29 @@ std::string worst_light(const Costs& costs) {
   const auto rate = [](const LightCosts& light) {
     return light.at(light.rule_delays_min.front()).false_offs_an_hour.value;
   };
-  const LightCosts& worst = *std::ranges::max_element(costs.lights, {}, rate);
-  return rate(worst) > 0.0 ? " The worst is " + worst.id + ", " + fixed(rate(worst), 2) + " times." : "";
+  const LightCosts* worst = nullptr;
+  for (const LightCosts& light : costs.lights) {
+    if (light.occupied_h > 0.0 && (worst == nullptr || rate(light) > rate(*worst))) worst = &light;
+  }
+  return worst != nullptr && rate(*worst) > 0.0
+             ? " The worst is " + worst->id + ", " + fixed(rate(*worst), 2) + " times."
+             : "";
 }
 
 std::string finding_of(const Costs& costs) {
   Sums sums;
   for (const LightCosts& light : costs.lights) sums.add(light);
   const bool is_one = costs.lights.size() == 1;
-  const std::string lit_h = fixed(sums.a_day(sums.lit_h), 2);
+  if (std::ranges::none_of(costs.lights, [](const LightCosts& light) { return light.known_days > 0.0; }))
+    return "Nothing is known of any light in these rows.";
+  const std::string lit_h = fixed(sums.lit_a_day, 2);
   std::string text = with_which_delay(costs);
-  if (!know_people(costs)) {
-    return text + (is_one ? ", the light is on for " + lit_h + " h" : ", lights are on for " + lit_h + " light-hours") +
-           " a day. The rows don't say when somebody is there, so who was left in the dark isn't known.";
+  if (!(sums.occupied_h > 0.0)) {
+    text += (is_one ? ", the light is on for " + lit_h + " h" : ", lights are on for " + lit_h + " light-hours") +
+            " a day. ";
+    return text + (know_people(costs)
+                       ? "Nobody was there in all of the time."
+                       : "The rows don't say when somebody is there, so who was left in the dark isn't known.");
   }
   if (is_one) {
     const LightCosts& light = costs.lights.front();
@@ -241,8 +246,7 @@ std::string finding_of(const Costs& costs) {
             " times in every hour that its area is occupied";
   }
   text += ". Somebody is in the dark for " + share(sums.dark_share()) + " of that time. Of " + lit_h +
-          (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.a_day(sums.lit_empty_h), 2) +
-          " are lit for nobody.";
+          (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.empty_a_day, 2) + " are lit for nobody.";
   return is_one ? text : text + worst_light(costs);
 }
 
@@ -250,8 +254,8 @@ std::string finding_of(const Costs& costs) {
 io::Table overview(const Costs& costs) {
   io::Table table{{"light", "delay", "off on somebody, an occupied hour", "dark, %", "lit, h/day", "empty, h/day"}, {}};
   const auto add = [&](const std::string& name, const std::string& delay, const Sums& sums) {
-    table.rows.push_back({name, delay, fixed(sums.offs_an_hour(), 2), fixed(100.0 * sums.dark_share(), 1),
-                          fixed(sums.a_day(sums.lit_h), 2), fixed(sums.a_day(sums.lit_empty_h), 2)});
+    table.rows.push_back({name, delay, told(sums.offs_an_hour(), 2), told(100.0 * sums.dark_share(), 1),
+                          fixed(sums.lit_a_day, 2), fixed(sums.empty_a_day, 2)});
   };
   Sums all;
   for (const LightCosts& light : costs.lights) {
@@ -271,36 +275,43 @@ LitDays::LitDays(const RuleSpec& rule, double window_s) : window_s_(window_s) {
 }
 
 void LitDays::add(const Sample& row, const LitRow& lit) {
-  constexpr std::size_t to_date = 10, to_time = 11;
-  has_clock_ = has_clock_ || !row.clock.empty();
-  const std::string name =
-      has_clock_ ? row.clock.substr(0, to_date) : "run " + std::to_string(row.replicate) + ", " + row.trial;
-  if (days_.empty() || days_.back().first != name) {
+  constexpr std::int64_t day_s = 86400;
+  has_clock_ = has_clock_ || lit.ends_s;
+  const double middle_s =
+      lit.ends_s ? static_cast<double>(*lit.ends_s) - 0.5 * window_s_ : row.time_s - 0.5 * window_s_;
+  const auto date = static_cast<std::int64_t>(std::floor(middle_s / day_s));
+  Key key{row.replicate, row.trial, date};
+  if (days_.empty() || days_.back().first != key) {
     if (days_.size() >= most_days) return;
-    days_.push_back({name, {std::vector<double>(n_bins * names_.size()), std::vector<double>(n_bins * names_.size())}});
+    days_.emplace_back(std::move(key), std::vector<Bin>(n_bins * names_.size()));
   }
-  const auto clock_s = has_clock_ ? 3600.0 * clock_hours(row.clock.substr(to_time)).value_or(0.0) : row.time_s;
-  const auto bin = static_cast<std::size_t>(std::max(0.0, clock_s - 0.5 * window_s_) / bin_s);
-  if (bin >= n_bins) return;
-  Bins& bins = days_.back().second;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    bins.lit[bin * names_.size() + i] += lit.lit[i] == 1 ? window_s_ : 0.0;
-    double& people = bins.people[bin * names_.size() + i];
-    people = std::max<double>(people, lit.people[i]);
+  const double from_s = std::max(0.0, middle_s - 0.5 * window_s_ - static_cast<double>(date * day_s));
+  const double to_s = std::min<double>(day_s, middle_s + 0.5 * window_s_ - static_cast<double>(date * day_s));
+  for (auto bin = static_cast<std::size_t>(from_s / bin_s); static_cast<double>(bin) * bin_s < to_s; ++bin) {
+    const double begin_s = static_cast<double>(bin) * bin_s;
+    const double s = std::min(to_s, begin_s + bin_s) - std::max(from_s, begin_s);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      Bin& at = days_.back().second[bin * names_.size() + i];
+      at.lit += lit.lit[i] == 1 ? s : 0.0;
+      at.known += lit.lit[i] <= 1 ? s : 0.0;
+      at.people = std::max(at.people, lit.people[i]);
+      knows_people_ = knows_people_ || lit.people[i] >= 0;
+    }
   }
 }
 
 io::DaysChart LitDays::chart() const {
   io::DaysChart chart;
   chart.title = "When it is lit";
+  chart.note = "hatched: nothing is known";
   chart.bin_s = bin_s;
   chart.n_bins = static_cast<int>(n_bins);
   chart.ticks = has_clock_ ? io::DaysChart::Ticks::clock : io::DaysChart::Ticks::seconds;
   using Day = io::DaysChart;
-  const auto runs_of = [&](const std::vector<double>& values, std::size_t light, auto level_of) {
+  const auto runs_of = [&](const std::vector<Bin>& bins, std::size_t light, auto level_of) {
     std::vector<Day::Run> runs;
     for (std::size_t bin = 0; bin < n_bins; ++bin) {
-      const int level = level_of(values[bin * names_.size() + light]);
+      const int level = level_of(bins[bin * names_.size() + light]);
       if (level == 0) continue;
       const int at = static_cast<int>(bin);
       if (!runs.empty() && runs.back().to == at && runs.back().level == level) {
@@ -311,15 +322,23 @@ io::DaysChart LitDays::chart() const {
     }
     return runs;
   };
-  for (const auto& [name, bins] : days_) {
-    Day::Day day{name, {}};
+  for (const auto& [key, bins] : days_) {
+    const auto& [replicate, trial, date] = key;
+    constexpr std::size_t date_length = 10;
+    const std::string run = "run " + std::to_string(replicate) + ", " + trial;
+    Day::Day day{has_clock_ ? clock_text(date, 0.0).substr(0, date_length) : run, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      day.lines.push_back({names_[i], runs_of(bins.lit, i, [](double s) {
-                             const double lit = s / bin_s;
-                             return lit <= 0.0 ? 0 : lit <= 0.05 ? 1 : lit <= 0.2 ? 2 : lit <= 0.5 ? 3 : 4;
+      day.lines.push_back({names_[i], runs_of(bins, i, [](const Bin& bin) {
+                             const double lit = bin.lit / bin.known;
+                             return bin.known == 0.0 ? Day::unknown
+                                    : lit <= 0.0     ? 0
+                                    : lit <= 0.05    ? 1
+                                    : lit <= 0.2     ? 2
+                                    : lit <= 0.5     ? 3
+                                                     : 4;
                            })});
-      day.lines.push_back({"people", runs_of(bins.people, i, [](double n) { return std::max(0, static_cast<int>(n)); }),
-                           Day::Shows::people});
+      if (!knows_people_) continue;
+      day.lines.push_back({"people", runs_of(bins, i, [](const Bin& bin) { return bin.people; }), Day::Shows::people});
     }
     chart.days.push_back(std::move(day));
   }
@@ -329,7 +348,7 @@ io::DaysChart LitDays::chart() const {
 io::Report control_page(const Costs& costs, const LitDays& days, const std::string& view) {
   io::Report report;
   report.title = "Light: " + costs.rule;
-  report.finding = finding_of(costs);
+  report.finding = finding_of(costs) + (costs.lights.size() == 1 ? " " + advise(costs.lights.front()).sentence : "");
   report.paragraphs = {
       "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
@@ -354,6 +373,7 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         ", " + fixed(light.hours, 1) + " hours" +
         (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
+    if (costs.lights.size() > 1) section.paragraphs.insert(section.paragraphs.begin(), advise(light).sentence);
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
 
@@ -377,14 +397,16 @@ std::string to_text(const Costs& costs) {
   text << finding_of(costs) << '\n';
   double unknown_h = 0.0;
   for (const LightCosts& light : costs.lights) unknown_h = std::max(unknown_h, light.unknown_h);
-  if (unknown_h > 0.0)
+  if (unknown_h >= 0.005)
     text << "Of " << fixed(unknown_h, 2) << " more hours nothing is known: they count for nothing.\n";
-  if (costs.lights.size() < 2 || !know_people(costs)) return text.str();
-  for (const auto& row : overview(costs).rows) {
-    text << "  " << std::left << std::setw(16) << row[0] << std::setw(8) << row[1] << "off on somebody " << row[2]
-         << " an occupied hour, dark " << row[3] << " %, lit " << row[4] << " h a day, " << row[5]
-         << " of them empty\n";
+  if (costs.lights.size() > 1 && know_people(costs)) {
+    for (const auto& row : overview(costs).rows) {
+      text << "  " << std::left << std::setw(16) << row[0] << std::setw(8) << row[1] << "off on somebody " << row[2]
+           << " an occupied hour, dark " << row[3] << " %, lit " << row[4] << " h a day, " << row[5]
+           << " of them empty\n";
+    }
   }
+  for (const LightCosts& light : costs.lights) text << advise(light).sentence << '\n';
   return text.str();
 }
 

@@ -1,8 +1,11 @@
 // The page about light: curves over the delay, when it is lit, the worst moments.
 #pragma once
 
-#include <map>
+#include <cstdint>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "io/pages/report.hpp"
 #include "pirsim/control.hpp"
@@ -17,15 +20,17 @@ class LitDays {
   [[nodiscard]] io::DaysChart chart() const;
 
  private:
-  struct Bins {
-    std::vector<double> lit, people;  ///< (n_bins x n_lights) seconds, and most people
+  struct Bin {
+    double lit = 0.0, known = 0.0;  ///< seconds
+    std::int32_t people = -1;       ///< the most; -1: not known
   };
+  using Key = std::tuple<int, std::string, std::int64_t>;  ///< replicate, trial, and the day since 1970 or of the run
   static constexpr double bin_s = 120.0;
   static constexpr std::size_t n_bins = 720, most_days = 14;
   std::vector<std::string> names_;
   double window_s_;
-  std::vector<std::pair<std::string, Bins>> days_;
-  bool has_clock_ = false;
+  std::vector<std::pair<Key, std::vector<Bin>>> days_;  ///< (n_bins x n_lights)
+  bool has_clock_ = false, knows_people_ = false;
 };
 
 /// view: words of a command that makes a page of a moment, "pirsim view --scene room.gltf --script week.yaml"; or no

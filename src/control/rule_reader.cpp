@@ -1,7 +1,10 @@
 #include "pirsim/control.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/files/input.hpp"
 #include "io/read/reader_parts.hpp"
 
@@ -30,6 +33,11 @@ std::vector<double> read_delays(io::YamlMap& map, const std::vector<double>& oth
   if (!node || !node->is_list()) return {map.number("delay_min", otherwise.front(), delay_min)};
   const std::vector<double> delays = map.numbers("delay_min", {}, delay_min);
   if (delays.empty()) map.faults().error(node->where(), "delay_min: expected a number, or several");
+  for (auto delay = delays.begin(); delay != delays.end(); ++delay) {
+    if (std::find(delays.begin(), delay, *delay) == delay) continue;
+    const io::YamlNode again = map.list("delay_min")[static_cast<std::size_t>(delay - delays.begin())];
+    map.faults().error(again.where(), "delay_min: " + shortest_number(*delay) + " is named twice");
+  }
   return delays.empty() ? otherwise : delays;
 }
 
@@ -55,6 +63,9 @@ LightSpec read_light(const io::YamlNode& node, std::size_t index, Diagnostics& f
   light.timer = map.choice<Timer>("timer", light.timer, {{"restarts", Timer::restarts}, {"runs_out", Timer::runs_out}});
   light.least_on_min = map.number("least_on_min", light.least_on_min, delay_min);
   light.door = map.text("door");
+  light.settle_s = map.number("settle_s", light.settle_s, reaction_s);
+  if (map.has("settle_s") && light.door.empty())
+    faults.error(map.where("settle_s"), "settle_s: of its door, and the light has no `door`");
   read_part(map, "night", light.night, [](io::YamlMap& own, NightSpec& night) {
     night.from_h = hours(own, "from", night.from_h);
     night.to_h = hours(own, "to", night.to_h);
@@ -63,9 +74,12 @@ LightSpec read_light(const io::YamlNode& node, std::size_t index, Diagnostics& f
   light.from_h = hours(map, "from", light.from_h);
   light.to_h = hours(map, "to", light.to_h);
   light.power_w = map.number("power_w", light.power_w, {.min = 0.0, .max = 1e6});
+  light.at_most_a_week = map.number("at_most_a_week", light.at_most_a_week, {.min = 1e-3, .max = 1e4});
   if (map.has("sensors") && light.sensors.empty())
     faults.error(map.where("sensors"), "sensors: light '" + light.id + "' has none that could switch it");
-  if (light.to_h <= light.from_h) faults.error(map.where("to"), "light: `to` is not after `from`");
+  const bool is_whole_day = light.from_h == 0.0 && light.to_h == 24.0;
+  if (!is_whole_day && std::fmod(light.from_h, 24.0) == std::fmod(light.to_h, 24.0))
+    faults.error(map.where("to"), "light: `to` is `from`: it is never dark");
   if (const std::string bad = name_fault(light.id); !bad.empty())
     faults.error(map.where("id"), "light: id: '" + light.id + "': " + bad);
   map.finish();

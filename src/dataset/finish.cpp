@@ -89,13 +89,14 @@ void write_energyplus(const Description& described, const fs::path& folder) {
   int year = 0;
   for (const RoomDayRecord& day : described.days) {
     if (year == 0) year = std::stoi(day.date.substr(0, 4));
+    if (!day.fault.empty()) continue;  // who was there isn't known; a room without any other day has no columns
     const std::chrono::weekday weekday{std::chrono::sys_days(std::chrono::days(day_number(day.date, {})))};
     if (!rooms.empty() && rooms[first].room != room_name(day.room)) first = rooms.size();
     const auto add = [&](const std::string& name, const DayProfile& profile) {
       auto known = std::find_if(rooms.begin() + static_cast<std::ptrdiff_t>(first), rooms.end(),
                                 [&](const RoomProfile& room) { return room.room == name; });
       if (known == rooms.end()) known = rooms.insert(rooms.end(), {name, {}});
-      if (day.fault.empty()) known->weekdays[(weekday.iso_encoding() - 1) % 7].push_back(profile);
+      known->weekdays[(weekday.iso_encoding() - 1) % 7].push_back(profile);
     };
     add(room_name(day.room), {day.presence, day.people});
     for (const auto& [area, profile] : day.areas) add(room_name(day.room) + '_' + area, profile);

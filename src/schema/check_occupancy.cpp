@@ -148,7 +148,7 @@ void check_together(const OccupancySpec& occupancy, const std::string& begin, co
 }
 
 void check(const OccupancySpec& occupancy, const std::string& begin, const SpecPath& path, SpecFaults& faults) {
-  faults.numbers(occupancy, path);
+  faults.fields(occupancy, path);
   check_together(occupancy, begin,
                  [&](std::string_view field, const std::string& message) { faults.error(path.field(field), message); });
 }

@@ -42,7 +42,7 @@ class SceneCheck {
       const SpecPath seat = path.item("seats", i);
       check_id(scene_.seats[i].id, seat, seats);
       check_upright(scene_.seats[i].world_from_seat, seat.field("world_from_seat"));
-      faults_.numbers(scene_.seats[i], seat);
+      faults_.fields(scene_.seats[i], seat);
       check_uses(scene_.seats[i].uses, seat);
     }
     for (std::size_t i = 0; i < scene_.places.size(); ++i) {
@@ -55,14 +55,14 @@ class SceneCheck {
       const SpecPath entrance = path.item("entrances", i);
       check_id(scene_.entrances[i].id, entrance, entrances);
       check_upright(scene_.entrances[i].world_from_entrance, entrance.field("world_from_entrance"));
-      faults_.numbers(scene_.entrances[i], entrance);
+      faults_.fields(scene_.entrances[i], entrance);
     }
     Names doors("door");
     for (std::size_t i = 0; i < scene_.doors.size(); ++i) {
       const SpecPath door = path.item("doors", i);
       check_id(scene_.doors[i].id, door, doors);
       check_upright(scene_.doors[i].world_from_door, door.field("world_from_door"));
-      faults_.numbers(scene_.doors[i], door);
+      faults_.fields(scene_.doors[i], door);
     }
     for (const auto& [name, model] : scene_.sensor_models) {
       const std::string key = "sensor_models['" + name + "']";
@@ -81,7 +81,7 @@ class SceneCheck {
       n_elements += mesh.positions.size() + mesh.triangles.size();
       const SpecPath here = path.item("meshes", i);
       check_corners(mesh, here);
-      faults_.numbers(mesh, here);
+      faults_.fields(mesh, here);
     }
     if (n_elements <= limits::scene_elements) return;
     faults_.error(path.field("meshes"),
@@ -119,7 +119,7 @@ class SceneCheck {
     check_id(sensor.id, path, ids);
     faults_.error_if(path.field("id"), column_fault(sensor.id));
     static_cast<void>(check_frame(sensor.world_from_sensor, path.field("world_from_sensor")));
-    faults_.numbers(sensor, path);
+    faults_.fields(sensor, path);
     faults_.error_if(path.field("area"), area_fault(sensor, scene_.areas));
     if (scene_.sensor_models.contains(sensor.model)) return;
     std::vector<std::string> names;

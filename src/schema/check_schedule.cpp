@@ -8,12 +8,12 @@ namespace pirsim {
 namespace {
 
 void check(const MeetingsSpec& meetings, const SpecPath& path, SpecFaults& faults) {
-  faults.numbers(meetings, path);
+  faults.fields(meetings, path);
   faults.together(meetings, path);
   if (!faults.few(path.field("held"), meetings.held.size(), limits::held_meetings)) return;
   for (std::size_t i = 0; i < meetings.held.size(); ++i) {
     const SpecPath held = path.item("held", i);
-    faults.numbers(meetings.held[i], held);
+    faults.fields(meetings.held[i], held);
     faults.together(meetings.held[i], held);
   }
   check_together(meetings.held, [&](std::size_t i, std::size_t j) {
@@ -85,29 +85,29 @@ void check_together(const HouseholdSpec& household, const TellFault& tell) {
 }
 
 void check(const HouseholdSpec& household, const SpecPath& path, SpecFaults& faults) {
-  faults.numbers(household, path);
+  faults.fields(household, path);
   faults.together(household, path);
   for (std::size_t i = 0; i < household.residents.size(); ++i)
-    faults.numbers(household.residents[i], path.item("residents", i));
-  for (const auto& [key, clock] : household_clocks) faults.numbers(household.*clock, path.field(key));
+    faults.fields(household.residents[i], path.item("residents", i));
+  for (const auto& [key, clock] : household_clocks) faults.fields(household.*clock, path.field(key));
 }
 
 void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults) {
-  faults.numbers(schedule, path);
+  faults.fields(schedule, path);
   faults.together(schedule, path);
   if (!faults.few(path.field("staff"), schedule.staff.size(), limits::list_entries)) return;
-  for (std::size_t i = 0; i < schedule.staff.size(); ++i) faults.numbers(schedule.staff[i], path.item("staff", i));
+  for (std::size_t i = 0; i < schedule.staff.size(); ++i) faults.fields(schedule.staff[i], path.item("staff", i));
   if (!faults.few(path.field("meetings"), schedule.meetings.size(), limits::list_entries)) return;
   for (std::size_t i = 0; i < schedule.meetings.size(); ++i)
     check(schedule.meetings[i], path.item("meetings", i), faults);
   if (schedule.profile) {
-    faults.numbers(*schedule.profile, path.field("profile"));
+    faults.fields(*schedule.profile, path.field("profile"));
     faults.together(*schedule.profile, path.field("profile"));
   }
   if (schedule.household) check(*schedule.household, path.field("household"), faults);
-  faults.numbers(schedule.arrival, path.field("arrival"));
-  faults.numbers(schedule.departure, path.field("departure"));
-  faults.numbers(schedule.lunch, path.field("lunch"));
+  faults.fields(schedule.arrival, path.field("arrival"));
+  faults.fields(schedule.departure, path.field("departure"));
+  faults.fields(schedule.lunch, path.field("lunch"));
 }
 
 }  // namespace pirsim

@@ -52,7 +52,7 @@ class ScriptCheck {
 
   void run() {
     const SpecPath path("script");
-    faults_.numbers(script_, path);
+    faults_.fields(script_, path);
     faults_.error_if(path.field("name"), line_fault(script_.name));
     check_sensing(path.field("sensing"));
     if (!faults_.few(path.field("trials"), script_.trials.size(), limits::trials)) return;
@@ -69,7 +69,7 @@ class ScriptCheck {
  private:
   void check_sensing(const SpecPath& path) {
     const SensingSpec& sensing = script_.sensing;
-    faults_.numbers(sensing, path);
+    faults_.fields(sensing, path);
     const auto longest_s = static_cast<long long>(accepted::window_s.max);
     const IntegerRange window{.min = 1, .max = longest_s * std::max(1, sensing.tick_rate_hz)};
     if (window.holds(sensing.ticks_per_window)) return;
@@ -85,7 +85,7 @@ class ScriptCheck {
 
   void check_trial(const TrialSpec& trial, const SpecPath& path, Names& ids) {
     check_id(trial.id, path, ids);
-    faults_.numbers(trial, path);
+    faults_.fields(trial, path);
     faults_.together(trial, path);
     if (!faults_.few(path.field("people"), trial.people.size(), limits::people)) return;
     Names people("person");
@@ -96,10 +96,10 @@ class ScriptCheck {
 
   void check_person(const PersonSpec& person, const SpecPath& path, Names& ids) {
     check_id(person.id, path, ids);
-    faults_.numbers(person, path);
-    faults_.numbers(person.seat_scatter, path.field("seat_scatter"));
+    faults_.fields(person, path);
+    faults_.fields(person.seat_scatter, path.field("seat_scatter"));
     const SpecPath warmth = path.field("warmth");
-    faults_.numbers(person.warmth, warmth);
+    faults_.fields(person.warmth, warmth);
     faults_.together(person.warmth, warmth);
     if (!person.body_mesh_file.empty() && person.body_meshes.empty()) {
       faults_.error(path.field("body_mesh_file"), "its meshes weren't read, as read_script() reads them");
@@ -115,9 +115,9 @@ class ScriptCheck {
 
   void check_action(const PersonSpec& person, const ScriptedAction& action, const SpecPath& path) {
     faults_.error_if(path.field("phase"), line_fault(action.phase));
-    faults_.numbers(action, path);
+    faults_.fields(action, path);
     faults_.error_if(path.field("activity"), activity_fault(person, action));
-    std::visit([&](const auto& what) { faults_.numbers(what, path); }, action.what);
+    std::visit([&](const auto& what) { faults_.fields(what, path); }, action.what);
     if (const auto* appear = std::get_if<action::Appear>(&action.what)) check_point(appear->point, path.field("point"));
     if (const auto* follow = std::get_if<action::Follow>(&action.what)) check_follow(*follow, path);
     const auto* walk = std::get_if<action::Walk>(&action.what);

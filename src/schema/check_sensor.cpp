@@ -6,7 +6,7 @@ namespace {
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 void check(const ClusterSpec& cluster, const SpecPath& path, SpecFaults& faults) {
-  faults.numbers(cluster, path);
+  faults.fields(cluster, path);
   if (cluster.zones.empty()) faults.error(path.field("zones"), "expected a list that isn't empty");
   for (std::size_t i = 0; i < cluster.zones.size(); ++i) {
     const ZoneSpec& zone = cluster.zones[i];
@@ -60,15 +60,15 @@ std::string corners_fault(const ZoneSpec& zone) {
 
 void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& faults) {
   if (model.id.empty()) faults.error(path.field("id"), "expected a text that isn't empty");
-  faults.numbers(model, path);
+  faults.fields(model, path);
   if (model.clusters.empty()) faults.error(path.field("clusters"), "expected a list that isn't empty");
   for (std::size_t i = 0; i < model.clusters.size(); ++i) check(model.clusters[i], path.item("clusters", i), faults);
-  faults.numbers(model.optics, path.field("optics"));
+  faults.fields(model.optics, path.field("optics"));
   const SpecPath detector = path.field("detector");
-  faults.numbers(model.detector.element, detector.field("element"));
-  faults.numbers(model.detector.amplifier, detector.field("amplifier"));
+  faults.fields(model.detector.element, detector.field("element"));
+  faults.fields(model.detector.amplifier, detector.field("amplifier"));
   faults.together(model.detector.amplifier, detector.field("amplifier"));
-  faults.numbers(model.detector.comparator, detector.field("comparator"));
+  faults.fields(model.detector.comparator, detector.field("comparator"));
   faults.together(model.detector.comparator, detector.field("comparator"));
   faults.together(model.detector, detector);
 }

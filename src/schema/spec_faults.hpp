@@ -1,9 +1,12 @@
 // Faults of specs that a program made, each with the place in the spec.
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -58,13 +61,15 @@ class SpecFaults {
     error(path, "has " + std::to_string(n) + " entries, more than " + std::to_string(most));
     return false;
   }
-  /// Every number and time of day of the spec itself.
+  /// Every number, time of day and list of names of the spec itself.
   template <typename Spec>
-  void numbers(const Spec& spec, const SpecPath& path) {
+  void fields(const Spec& spec, const SpecPath& path) {
     each_field<Spec>([&](const auto& field) {
       using F = std::remove_cvref_t<decltype(field)>;
       if constexpr (NumberField<F> || TimeField<F>)
         number_of(path.field(field.name), spec.*field.member, range_of(field, spec));
+      if constexpr (std::same_as<std::remove_cvref_t<decltype(spec.*field.member)>, std::vector<std::string>>)
+        names(path.field(field.name), spec.*field.member);
     });
   }
   template <typename Spec>
@@ -73,6 +78,12 @@ class SpecFaults {
   }
 
  private:
+  void names(const SpecPath& path, const std::vector<std::string>& names) {
+    const std::set<std::string> known(names.begin(), names.end());
+    if (known.size() == names.size()) return;
+    for (const std::string& name : known)
+      if (std::ranges::count(names, name) > 1) error(path, "'" + name + "' is named twice");
+  }
   void number_of(const SpecPath& path, double value, const NumberRange& range) { number(path, value, range); }
   void number_of(const SpecPath& path, int value, const IntegerRange& range) {
     if (!range.holds(value)) refuse(path, value, range);

@@ -429,6 +429,40 @@ class Light(unittest.TestCase):
         self.assertAlmostEqual(float(five["lit_h"]), 6 / 60)
         self.assertEqual(five["dark_h"], "")
 
+    def test_a_schedule_is_a_mean_over_runs_and_of_what_is_known(self):
+        head = "replicate,trial,time_s,time,phase,people,PIR1\n"
+        runs = [[f"{run},a,{60 * i},2026-03-02T08:{i:02}:00,x,{int(i > 15)},{int(run == 1)}\n" for i in range(1, 31)] for run in (1, 2)]
+        both = write(self.folder, "both.csv", head + "".join(runs[0] + runs[1]))
+        told = pirsim("control", both, "--delay", 0, "--schedule", self.folder / "s.csv")
+        by_time = {row["time"]: row for row in self.table("s.csv")}
+        self.assertEqual((by_time["2026-03-02T08:00"]["light_light"], by_time["2026-03-02T08:00"]["presence_light"]), ("0.5000", "0.0000"))
+        self.assertEqual((by_time["2026-03-02T08:15"]["light_light"], by_time["2026-03-02T08:15"]["presence_light"]), ("0.5000", "1.0000"))
+        self.assertIn("the schedule has 23.5 h of which nothing is known", told.stderr)
+        holed = write(self.folder, "holed.csv", head + "".join(runs[0]).replace("2026-03-02T08:07:00", ""))
+        self.assertIn("no clock", pirsim("control", holed, "--schedule", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
+        self.assertFalse((self.folder / "h.csv").exists())
+        log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
+        pirsim("control", "--log", log, "--delay", 0, "--schedule", self.folder / "l.csv", "--report", self.folder / "l.html")
+        self.assertEqual(self.table("l.csv")[0].keys(), {"time", "light_light"})
+        self.assertNotIn('"people":true', (self.folder / "l.html").read_text())  # a line of them, hatched or not
+        pirsim("control", both, "--report", self.folder / "b.html")
+        page = (self.folder / "b.html").read_text()
+        self.assertEqual(page.count('"name":"2026-03-02"'), 2)  # a line a run
+        self.assertIn('{"name":"people","people":true,"runs":[0,240,-1,247,255,1,255,720,-1]}', page)
+
+    def test_which_delay_to_take_is_told_by_default(self):
+        lines = [f"{day},a,{60 * i},x,1,{int(i % 8 == 1)}\n" for day in range(1, 25) for i in range(1, 121)]
+        weeks = write(self.folder, "weeks.csv", "replicate,trial,time_s,phase,people,PIR1\n" + "".join(lines))
+        sentence = "light: 7 min: off on somebody less than once a week, 0 min of empty light a day; at 10 min not once, and 0 min."
+        told = pirsim("control", weeks, "--report", self.folder / "light.html")
+        self.assertIn(sentence, told.stdout)
+        self.assertIn(sentence, (self.folder / "light.html").read_text())
+        self.assertIn("too few to tell which delay goes off on somebody less than 0.5 times a week: 42 without",
+                      pirsim("control", weeks, "--at-most", 0.5).stdout)
+        self.assertIn("--delay: 5 is given twice", pirsim("control", weeks, "--delay", 5, 1, 5, code=2).stderr)
+        twice = write(self.folder, "twice.yaml", "pirsim_control: 1\nlights: [{sensors: [PIR1, PIR1], together: {sensors: 2}}]\n")
+        self.assertIn("twice.yaml:2:27: error: light: sensors: 'PIR1' is named twice", pirsim("control", weeks, "--rule", twice, code=3).stderr)
+
     def test_what_are_no_rows_is_told_with_its_place(self):
         good = write(self.folder, "rows.csv", "replicate,trial,time_s,phase,people,PIR1\n1,a,1,x,0,1\n1,a,2,x,0,0\n")
         for name, text, told in (("log.csv", "time,PIR1\n2026-03-02T10:00:00,1\n", "log.csv:1:1: error: these aren't rows"),

@@ -109,7 +109,11 @@ std::vector<double> YamlMap::required_numbers(const std::string& key, std::size_
 std::vector<std::string> YamlMap::texts(const std::string& key, std::vector<std::string> otherwise) {
   if (!child(key)) return otherwise;
   std::vector<std::string> values;
-  for (const YamlNode& item : list(key)) values.push_back(item.text(*faults_, label(key)));
+  for (const YamlNode& item : list(key)) {
+    values.push_back(item.text(*faults_, label(key)));
+    if (std::ranges::find(values.begin(), values.end() - 1, values.back()) == values.end() - 1) continue;
+    faults_->error(item.where(), label(key) + ": '" + values.back() + "' is named twice");
+  }
   return values;
 }
 

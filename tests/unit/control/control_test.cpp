@@ -3,9 +3,7 @@
 
 #include <cmath>
 #include <random>
-#include <sstream>
 
-#include "control/outputs.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -87,7 +85,7 @@ TEST_CASE("light by hand: timers that run out, least times, doors, switches and 
   LightSpec runs_out, least, latch, manual;
   runs_out.timer = Timer::runs_out;
   CHECK(lit(runs_out, 2.0, "0110000110", "1111111111") == "0111000111");
-  CHECK(lit(runs_out, 2.0, "1111111111", "1111111111") == "1110111011");  // it blinks
+  CHECK(lit(runs_out, 2.0, "1111111111", "1111111111") == "1111111111");  // and never off in motion
   least.least_on_min = 5.0;
   CHECK(lit(least, 1.0, "0100000000", "1111111111") == "0111110000");
   latch.door = "door";
@@ -216,7 +214,9 @@ TEST_CASE("A light goes on through gaps of the rows: it is lit where a motion is
     was_lit = is_lit;
   }
   REQUIRE(short_gaps > 20);
-  CHECK(control.finish().lights.front().at(delay).switched_on_a_day == switched_on);
+  const LightCosts costs = control.finish().lights.front();
+  CHECK(costs.known_days == Approx(costs.hours / 24.0));
+  CHECK(costs.at(delay).switched_on_a_day == Approx(switched_on / costs.known_days));
 }
 
 TEST_CASE("A light is switched in rows whose people nobody counted, and they aren't counted") {
@@ -345,7 +345,13 @@ TEST_CASE("rules are read with their places, and what can't be is refused") {
   refused("  - {delay_min: 525600}\n", "rule.yaml:3:17: error: light: delay_min: expected");
   refused("  - {delay_min: -1}\n", "delay_min: expected");
   refused("  - {area: office, sensors: []}\n", "sensors: light 'office' has none that could switch it");
-  refused("  - {from: \"20:00\", to: \"08:00\"}\n", "`to` is not after `from`");
+  refused("  - {from: \"20:00\", to: \"20:00\"}\n", "rule.yaml:3:25: error: light: `to` is `from`: it is never dark");
+  refused("  - {from: \"00:00\", to: \"00:00\"}\n", "it is never dark");
+  refused("  - {settle_s: 5}\n", "rule.yaml:3:16: error: settle_s: of its door, and the light has no `door`");
+  refused("  - {sensors: [A, B, A]}\n", "rule.yaml:3:22: error: light: sensors: 'A' is named twice");
+  refused("  - {delay_min: [5, 10, 5.0]}\n", "rule.yaml:3:25: error: delay_min: 5 is named twice");
+  CHECK(parsed("  - {from: \"18:00\", to: \"07:00\"}\n").lights.front().to_h == 7.0);
+  CHECK(parsed("  - {door: front, settle_s: 3, at_most_a_week: 0.5}\n").lights.front().settle_s == 3.0);
   refused("  - {id: a}\n  - {id: a}\n", "a second light 'a'");
   refused("  []\n", "lights");
   refused("  - {timer: runs}\n", "timer: ");
@@ -360,27 +366,9 @@ TEST_CASE("a rule that doesn't fit the rows is refused, each fault with its ligh
   refused("{sensors: [PIR3]}", "the rows have no sensor 'PIR3' (did you mean 'PIR1'?)");
   refused("{area: ofice}", "the rows have no people of an area 'ofice' (did you mean 'office'?)");
   refused("{door: front}", "the rows have no door 'front'; there are none");
+  CHECK_THROWS_WITH(Control(parsed("  - manual: {}\n"), columns, 1.0, People::unknown),
+                    contains("manual goes by who is in the dark, and the rows have no people"));
   CHECK_THROWS_WITH(Control(parsed("  - {door: front}\n"), {{"PIR1"}, {}, {"bath", "bedroom"}}, 1.0),
                     contains("no door 'front'; there are bath, bedroom"));
   refused("{together: {sensors: 3}}", "together: 3 sensors of 2");
-}
-
-TEST_CASE("a schedule has whole days, with the shares of each step") {
-  const RuleSpec rule = rule_with({}, {0.0});
-  Schedule schedule(rule, minute_s, 30);
-  Control control(rule, {{"PIR"}, {}, {}}, minute_s);
-  for (int i = 0; i < 60; ++i) {
-    Sample row = row_of(i, i < 15, i < 45 ? 1 : 0);
-    const int end_min = 23 * 60 + i + 1;  // the last one ends at midnight
-    row.clock = end_min == 1440 ? "2026-03-03T00:00:00"
-                                : "2026-03-02T23:" + std::string(i + 1 < 10 ? "0" : "") + std::to_string(i + 1) + ":00";
-    schedule.add(row, control.add(row));
-  }
-  std::ostringstream text;
-  schedule.write(text);
-  CHECK(schedule.n_days() == 1);
-  CHECK_THAT(
-      text.str(),
-      contains("2026-03-02T22:30,0.0000,0.0000\n2026-03-02T23:00,0.5000,1.0000\n2026-03-02T23:30,0.0000,0.5000\n"));
-  CHECK(std::ranges::count(text.str(), '\n') == 49);
 }

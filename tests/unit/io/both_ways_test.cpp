@@ -261,6 +261,9 @@ TEST_CASE("what else a script can't be is refused by file and by object", "[both
   wrong(plain, person + ".id", [&](ScriptSpec& s) { first(s).id.clear(); });
   wrong(plain, "people[1].id: a second person", [&](ScriptSpec& s) { s.trials.front().people.push_back(first(s)); });
   wrong(plain, person + ".warmth.bare", [&](ScriptSpec& s) { first(s).warmth.bare.emplace_back("heed"); });
+  wrong(plain, person + ".warmth.bare: 'head' is named twice", [&](ScriptSpec& s) {
+    first(s).warmth.bare = {"head", "head"};
+  });
   wrong(plain, person + ".warmth.parts_c", [&](ScriptSpec& s) { first(s).warmth.parts_c["heed"] = 30.0; });
   wrong(plain, person + ".warmth.parts_c", [&](ScriptSpec& s) { first(s).warmth.parts_c["head"] = 1e3; });
   wrong(plain, person + ".body_mesh_file", [&](ScriptSpec& s) { first(s).body_mesh_file = "nobody.gltf"; });

@@ -58,6 +58,7 @@ TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  staff: [{count: 2}]\n  arrival: {mean: half past eight}\n", "s.yaml:4:19: error: mean: expected a time");
   refused("  first_day: 2026-02-30\n  staff: [{count: 2}]\n", "s.yaml:3:14: error: '2026-02-30' is no date");
   refused("  from: 08:00\n", "s.yaml:3:3: error: schedule: nobody comes");
+  refused("  staff: [{count: 2, seats: [S1, S2, S1]}]\n", "s.yaml:3:38: error: staff: seats: 'S1' is named twice");
   refused("  staff: [{role: manger}]\n", "(did you mean 'manager'?)");
   refused("  meetings: {held: [{at: 10:00, duration_min: 60}, {at: 10:30, duration_min: 60}]}\n",
           "error: held: overlaps");
