@@ -30,6 +30,7 @@ def random_bits(n, n_sensors, seed=0, unknown=0.2):
     rng = np.random.default_rng([seed, n, n_sensors])
     bits = (rng.random((n, n_sensors)) < 0.4).astype(np.uint8)
     bits[rng.random(bits.shape) < unknown] = 2
+    bits[0] %= 2  # from there on a number is told
     return bits
 
 

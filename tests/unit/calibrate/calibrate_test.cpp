@@ -326,6 +326,7 @@ TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
   counts.rows.window_s = 1800.0;
   counts.rows.clock = LogClock::elapsed;
   counts.rows.people = {1, 1, 1};
+  counts.rows.motion = {1, counting::unknown_bit, 0};
   for (int i = 0; i < 3; ++i) counts.rows.begin.push_back({i * std::int64_t{1'800'000'000}, 0});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   counts.estimates = {2, {0.1, 0.9, nan, nan, 1.0, 0.0}};
