@@ -341,7 +341,6 @@ RowReader::RowReader(const std::filesystem::path& file) : RowReader(std::make_un
 RowReader::RowReader(std::string_view bytes, const std::string& name)
     : RowReader(std::make_unique<Lines>(bytes, name)) {}
 RowReader::~RowReader() = default;
-RowReader::RowReader(RowReader&&) noexcept = default;
 
 double RowReader::usual_step_s() {
   constexpr std::size_t enough = 256;
