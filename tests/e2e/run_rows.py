@@ -142,12 +142,14 @@ class Agreement(Case):
 
 class Runs(Case):
     def test_rows_of_a_log_are_rows(self):
-        log = self.write("log.csv", "time,PIR1,people", [f"2026-03-02T08:{i:02}:00,{'' if i == 3 else int(i == 5)},{int(i > 2)}" for i in range(20)])
+        log = self.write("log.csv", "time,PIR1,people", [f"2026-03-0{2 + i // 10}T{(23 + i // 10) % 24:02}:{50 * (i < 10) + i % 10:02}:00,{'' if i == 3 else int(i == 5)},{int(i > 2)}"
+                                     for i in range(20)])  # over midnight
         out = self.folder / "rows.csv"
         self.assertEqual(run("log", log, "--window", 60, "-o", out, "-q").returncode, 0)
         of_rows = self.costs(out, delay=2)[0]
         of_log = self.costs("--log", log, "--step", 60, delay=2)[0]
         self.assertEqual(of_rows, of_log)
+        self.assertEqual(of_rows["days"], "2")
         self.assertNotEqual(of_rows["occupied_h"], "")
 
     def test_unknown_bits_are_not_motionless(self):
