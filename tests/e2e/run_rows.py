@@ -195,11 +195,12 @@ class Runs(Case):
         for room in (1, 2, 3, 4):
             for day in (1, 2):
                 has_den = room < 3
-                lines = [f"{room},{day},{60 * i},2026-03-0{day}T08:{i:02}:00,1,1,0,0,1,{0 if has_den else ''},{'' if i == 9 else 1},"
-                         f"{1 if has_den else ''}," for i in range(1, 60)]
+                lines = [f"{room},{day},{60 * i},2026-03-0{day}T08:{i:02}:00,1,1,0,0,1,{0 if has_den else ''},"
+                         f"{'' if i == 9 else 1},{1 if has_den else ''}," for i in range(1, 60)]
                 self.write(f"set/rows/room_{room}/day_{day}.csv", header, lines)
         rule = self.folder / "rule.yaml"
-        rule.write_text("pirsim_control: 1\nlights: [{area: den, sensors: [P_den], delay_min: 1}, {area: hall, sensors: [P_hall, P_away], delay_min: 1}]\n")
+        rule.write_text("pirsim_control: 1\nlights:\n- {area: den, sensors: [P_den], delay_min: 1}\n"
+                        "- {area: hall, sensors: [P_hall, P_away], delay_min: 1}\n")
         self.costs(self.folder / "set", "--rule", rule)
         with open(self.folder / "costs.csv", newline="") as table:
             lights = {line["light"]: line for line in csv.DictReader(table) if line["delay_min"] == "1"}
@@ -222,7 +223,8 @@ class Occupancy(Case):
         for column in ("replicate", "trial", "room", "day"):
             result = self.played(f"{column},time_s,person,x_m,z_m\n1,0,a,2,-2\n1,3,a,3,-2\n2,0,b,2,-3\n2,3,b,3,-3\n")
             self.assertEqual(result.returncode, 3)
-            self.assertIn(f"tracks.csv:4:1: error: rows of more than one run: keep those of one {column}", result.stderr)
+            self.assertIn(f"tracks.csv:4:1: error: rows of more than one run: keep those of one {column}",
+                          result.stderr)
 
     def test_a_person_may_be_called_by_a_number_sign(self):
         lines = self.played("# metres\nid,t,x,z\n#1,0,2,-2\n#1,3,2.5,-2\nb,0,4,-2\nb,3,4,-2.5\n").stdout.splitlines()
