@@ -186,9 +186,9 @@ class Control {
 
   /// The next row is of another run, whatever its replicate and trial.
   void begin_run() noexcept;
-  /// In order of time. A bit of 2 isn't known, people of -1 neither; a light that goes by what the row's room hasn't
-  /// got (bits of 3, people of -2) isn't in that room. A new replicate or trial begins in the dark. day: what intervals
-  /// are over; a run if it is empty. Throws Error(input) for a clock that tells no time.
+  /// In order of time. A bit of 2 isn't known, people of -1 neither. A light isn't in rooms that have none of its
+  /// sensors, or not its door (bits of 3), or not its area (people of -2). A new replicate or trial begins in the dark.
+  /// day: what intervals are over; a run if it is empty. Throws Error(input) for a clock that tells no time.
   LitRow add(const Sample& row, std::string_view day = {});
   [[nodiscard]] Costs finish() const;
 

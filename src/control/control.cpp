@@ -170,12 +170,11 @@ class Light {
     end_spell();
   }
 
-  /// Does the row's room have what the light goes by? Of all sensors as many as have to report motion are enough.
+  /// Does the row's room have what the light goes by? Of its sensors as many as have to report motion are enough.
   [[nodiscard]] bool is_here(const Sample& row, int people) const {
     if (people == absent_people || (columns_.door && row.doors[*columns_.door] == absent_bit)) return false;
     const auto n =
         std::ranges::count_if(columns_.sensors, [&](std::size_t sensor) { return row.bits[sensor] != absent_bit; });
-    if (!spec_.sensors.empty()) return n == std::ssize(columns_.sensors);
     return n >= (spec_.together ? spec_.together->sensors : 1);
   }
 

@@ -5,6 +5,7 @@
 
 #include "core/text.hpp"
 #include "io/files/compression.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::control {
 namespace {
@@ -33,6 +34,19 @@ std::vector<fs::path> tables_in(const fs::path& folder) {
 
 bool same(const ColumnOwners& a, const ColumnOwners& b) {
   return a.sensors == b.sensors && a.areas == b.areas && a.doors == b.doors;
+}
+
+/// Rows of a log, which are of no run: their days are dates.
+bool tells_dates_alone(const io::RowFormat& format) {
+  using Format = io::RowFormat;
+  const auto runs = {Format::replicate, Format::room, Format::trial, Format::day};
+  return format.has(Format::time) && std::ranges::none_of(runs, [&](auto column) { return format.has(column); });
+}
+
+std::string date_of_begin(const Sample& row, double window_s) {
+  constexpr std::size_t to_date = 10;
+  const auto end = clock_from(row.clock);
+  return end ? end->text(-window_s).substr(0, to_date) : std::string();
 }
 
 }  // namespace
@@ -67,8 +81,9 @@ void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
              shortest_number(about_.window_s) + " s: give rows of one length");
     }
     begin();
+    const bool is_log = tells_dates_alone(file->format());
     while (file->next_of_all(row)) {
-      take(row, {});
+      take(row, is_log ? date_of_begin(row, about_.window_s) : std::string());
       n_missing_ += file->is_filled() ? 1 : 0;
     }
   }

@@ -49,20 +49,28 @@ WHOLE = {
 FAULTY = {
     "a doubled row": (HEADER, rows()[:9] + rows()[8:], "11:6: error: time_s doesn't grow: 9 after 9"),
     "shuffled rows": (HEADER, rows()[10:] + rows()[:10], "12:6: error: time_s doesn't grow: 1 after 20"),
-    "another step": (HEADER, rows() + [row(21).replace(",21,", ",20.5,")], "22:6: error: rows are 1 s apart, and this one comes 0.5 s"),
-    "longer rows further on": (HEADER, rows(12) + [row(i) for i in range(17, 60, 5)], "16:6: error: rows are 1 s apart at first and 5 s here"),
-    "a run that comes again": (HEADER, rows() + [row(1).replace("1,S1", "2,S1"), row(21)], "23:1: error: this row is of a run whose rows have ended"),
+    "another step": (HEADER, rows() + [row(21).replace(",21,", ",20.5,")],
+        "22:6: error: rows are 1 s apart, and this one comes 0.5 s"),
+    "longer rows further on": (HEADER, rows(12) + [row(i) for i in range(17, 60, 5)],
+        "16:6: error: rows are 1 s apart at first and 5 s here"),
+    "a run that comes again": (HEADER, rows() + [row(1).replace("1,S1", "2,S1"), row(21)],
+        "23:1: error: this row is of a run whose rows have ended"),
     "a bit of 2": (HEADER, changed(7, row(7, "2,0")), "8:38: error: PIR1: expected 0 or 1, got '2'"),
     "a bit of -1": (HEADER, changed(7, row(7, "0,-1")), "8:40: error: PIR2: expected 0 or 1, got '-1'"),
     "half a bit": (HEADER, changed(7, row(7, "0.5,0")), "8:38: error: PIR1: expected 0 or 1, got '0.5'"),
     "a word": (HEADER, changed(7, row(7, "x,0")), "8:38: error: PIR1: expected 0 or 1, got 'x'"),
-    "fewer people than none": (HEADER, changed(7, row(7, people="-2")), "8:36: error: people: expected a number of people, got '-2'"),
-    "half a person": (HEADER, changed(7, row(7, people="0.5")), "8:36: error: people: expected a number of people, got '0.5'"),
+    "fewer people than none": (HEADER, changed(7, row(7, people="-2")),
+        "8:36: error: people: expected a number of people, got '-2'"),
+    "half a person": (HEADER, changed(7, row(7, people="0.5")),
+        "8:36: error: people: expected a number of people, got '0.5'"),
     "no time": (HEADER, changed(7, row(7).replace(",7,", ",,")), "8:6: error: time_s: expected a number"),
-    "a time that isn't local": (HEADER, changed(7, row(7).replace("2026-03-02T", "")), "8:8: error: time: expected a local time"),
-    "a comment between": (HEADER, rows()[:9] + ["# " + line for line in rows()[9:]], "11:1: error: replicate: expected a whole number, got '# 1'"),
+    "a time that isn't local": (HEADER, changed(7, row(7).replace("2026-03-02T", "")),
+        "8:8: error: time: expected a local time"),
+    "a comment between": (HEADER, rows()[:9] + ["# " + line for line in rows()[9:]],
+        "11:1: error: replicate: expected a whole number, got '# 1'"),
     "a row that is cut": (HEADER, rows() + ["1,S1,21"], "22:1: error: expected 8 fields, got 3"),
-    "a misspelt column": (HEADER.replace("people", "peple"), rows(), "1:35: error: unknown column 'peple' (did you mean 'people'?)"),
+    "a misspelt column": (HEADER.replace("people", "peple"), rows(),
+        "1:35: error: unknown column 'peple' (did you mean 'people'?)"),
     "a column twice": (HEADER.replace("PIR2", "PIR1"), rows(), "1:47: error: column 'PIR1' appears twice"),
     "other columns": ("second,PIR1", ["1,1"], "1:1: error: these aren't rows"),
     "nothing": ("", [], "1:1: error: expected a line with column names"),
@@ -97,8 +105,8 @@ class Case(unittest.TestCase):
 
     def reconcile(self, file, **kwargs):
         """The same of rows that are too few to compare, so that nothing is simulated."""
-        result = run("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", DATA / "studies/studyA.yaml", "--measured",
-                     file, "-o", self.folder / "out", "-q", **kwargs)
+        result = run("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", DATA / "studies/studyA.yaml",
+                     "--measured", file, "-o", self.folder / "out", "-q", **kwargs)
         self.assertEqual(result.returncode, 3, result.stderr)
         few = re.search(r"too little data: (\d+) rows to compare", result.stderr)
         return int(few[1]) if few else result.stderr
@@ -117,7 +125,8 @@ class Agreement(Case):
         for name, (header, lines, told) in FAULTY.items():
             for command in self.COMMANDS:
                 with self.subTest(f"{command}: {name}"):
-                    self.assertIn(f"rows.csv:{told}", str(getattr(self, command)(self.write("rows.csv", header, lines))))
+                    refusal = getattr(self, command)(self.write("rows.csv", header, lines))
+                    self.assertIn(f"rows.csv:{told}", str(refusal))
 
     def test_pipes_and_standard_input_are_read_once(self):
         text = "\n".join([HEADER, *rows(), ""])
@@ -142,12 +151,16 @@ class Agreement(Case):
 
 class Runs(Case):
     def test_rows_of_a_log_are_rows(self):
-        log = self.write("log.csv", "time,PIR1,people", [f"2026-03-02T08:{i:02}:00,{'' if i == 3 else int(i == 5)},{int(i > 2)}" for i in range(20)])
+        times = [f"2026-03-02T23:{minute}:00" for minute in range(50, 60)]
+        times += [f"2026-03-03T00:{minute:02}:00" for minute in range(10)]
+        log = self.write("log.csv", "time,PIR1,people",
+                         [f"{time},{'' if i == 3 else int(i == 5)},{int(i > 2)}" for i, time in enumerate(times)])
         out = self.folder / "rows.csv"
         self.assertEqual(run("log", log, "--window", 60, "-o", out, "-q").returncode, 0)
         of_rows = self.costs(out, delay=2)[0]
         of_log = self.costs("--log", log, "--step", 60, delay=2)[0]
         self.assertEqual(of_rows, of_log)
+        self.assertEqual(of_rows["days"], "2")
         self.assertNotEqual(of_rows["occupied_h"], "")
 
     def test_unknown_bits_are_not_motionless(self):
@@ -163,7 +176,8 @@ class Runs(Case):
             self.assertEqual((costs["days"], costs["lit_share"]), ("2", "0.5"))
 
     def test_a_gap_is_told_and_begins_anew(self):
-        costs, told = self.costs(self.write("rows.csv", HEADER, [row(1), row(2, "0,0"), row(50, "0,0"), row(51, "0,0")]), delay=1)
+        lines = [row(1), row(2, "0,0"), row(50, "0,0"), row(51, "0,0")]
+        costs, told = self.costs(self.write("rows.csv", HEADER, lines), delay=1)
         self.assertIn("warning: 47 rows of 1 s are missing", told)
         self.assertEqual(costs["lit_share"], "1")
         costs, _ = self.costs(self.folder / "rows.csv", delay=0)
@@ -177,15 +191,16 @@ class Runs(Case):
         self.assertIn("only one of it and", run("control", one, fewer).stderr)
 
     def test_a_home_without_the_light_of_a_rule_is_not_counted(self):
-        header = "room,day,time_s,time,people,presence,arrivals,departures,people_hall,people_den,P_hall,P_den"
+        header = "room,day,time_s,time,people,presence,arrivals,departures,people_hall,people_den,P_hall,P_den,P_away"
         for room in (1, 2, 3, 4):
             for day in (1, 2):
                 has_den = room < 3
-                lines = [f"{room},{day},{60 * i},2026-03-0{day}T08:{i:02}:00,1,1,0,0,1,{0 if has_den else ''},{'' if i == 9 else 1},"
-                         f"{1 if has_den else ''}" for i in range(1, 60)]
+                lines = [f"{room},{day},{60 * i},2026-03-0{day}T08:{i:02}:00,1,1,0,0,1,{0 if has_den else ''},"
+                         f"{'' if i == 9 else 1},{1 if has_den else ''}," for i in range(1, 60)]
                 self.write(f"set/rows/room_{room}/day_{day}.csv", header, lines)
         rule = self.folder / "rule.yaml"
-        rule.write_text("pirsim_control: 1\nlights: [{area: den, sensors: [P_den], delay_min: 1}, {area: hall, sensors: [P_hall], delay_min: 1}]\n")
+        rule.write_text("pirsim_control: 1\nlights:\n- {area: den, sensors: [P_den], delay_min: 1}\n"
+                        "- {area: hall, sensors: [P_hall, P_away], delay_min: 1}\n")
         self.costs(self.folder / "set", "--rule", rule)
         with open(self.folder / "costs.csv", newline="") as table:
             lights = {line["light"]: line for line in csv.DictReader(table) if line["delay_min"] == "1"}
@@ -208,7 +223,8 @@ class Occupancy(Case):
         for column in ("replicate", "trial", "room", "day"):
             result = self.played(f"{column},time_s,person,x_m,z_m\n1,0,a,2,-2\n1,3,a,3,-2\n2,0,b,2,-3\n2,3,b,3,-3\n")
             self.assertEqual(result.returncode, 3)
-            self.assertIn(f"tracks.csv:4:1: error: rows of more than one run: keep those of one {column}", result.stderr)
+            self.assertIn(f"tracks.csv:4:1: error: rows of more than one run: keep those of one {column}",
+                          result.stderr)
 
     def test_a_person_may_be_called_by_a_number_sign(self):
         lines = self.played("# metres\nid,t,x,z\n#1,0,2,-2\n#1,3,2.5,-2\nb,0,4,-2\nb,3,4,-2.5\n").stdout.splitlines()

@@ -199,7 +199,6 @@ std::uint8_t RowFormat::bit(std::size_t field, RepeatedFaults& faults) const {
 void RowFormat::take_clock(std::string& clock, RepeatedFaults& faults) const {
   constexpr std::size_t to_seconds = 19;
   clock = fields_[*at_[time]];
-  if (clock.empty()) return;
   if (clock.size() > to_seconds && clock[to_seconds] == '.') clock.resize(to_seconds);
   const std::optional<RunClock> moment = clock_from(clock);
   if (!moment) {
@@ -341,7 +340,6 @@ RowReader::RowReader(const std::filesystem::path& file) : RowReader(std::make_un
 RowReader::RowReader(std::string_view bytes, const std::string& name)
     : RowReader(std::make_unique<Lines>(bytes, name)) {}
 RowReader::~RowReader() = default;
-RowReader::RowReader(RowReader&&) noexcept = default;
 
 double RowReader::usual_step_s() {
   constexpr std::size_t enough = 256;

@@ -72,7 +72,6 @@ class RowReader {
   /// The bytes of one; `name` stands in messages.
   RowReader(std::string_view bytes, const std::string& name);
   ~RowReader();
-  RowReader(RowReader&&) noexcept;
 
   [[nodiscard]] const RowFormat& format() const noexcept { return format_; }
   /// How far most of the first rows are apart, or the time of a single one; 0 without rows.

@@ -66,6 +66,14 @@ TEST_CASE("CSV with quotes, CRLF, a byte order mark and comments is read", "[csv
         "f:7:6: error: c: expected a whole number, got '2.5'\nf:7:4: error: b \"x\": expected a number, got 'x'");
 }
 
+TEST_CASE("a line that begins with a number sign is a comment before the header alone", "[csv]") {
+  const CsvTable table = CsvTable::parse("# one\n\n#two\nid,x\n#1,2\n", "f");
+  REQUIRE(table.n_rows() == 1);
+  CHECK(table.text(0, 0) == "#1");
+  CHECK(table.where(0, 1) == Where{"f", 5, 4});
+  CHECK(refusal_of("id,x\n# a comment\n1,2\n") == "f:2:1: error: expected 2 fields, got 1");
+}
+
 TEST_CASE("CSV that breaks the rules is refused with line and column", "[csv]") {
   CHECK(refusal_of("") == "f:1:1: error: expected a line with column names");
   CHECK(refusal_of("a,b\n1\n1,2,3\n") == "f:2:1: error: expected 2 fields, got 1; 1 more like this");

@@ -120,6 +120,7 @@ TEST_CASE("what is no row is refused with line and column, each kind once", "[ro
         "f:4:13: error: A: expected 0 or 1, got '2'; 1 more like this\n"
         "f:6:7: error: people: expected a number of people, got '-1'");
   CHECK_THAT(refusal_of("time_s,time,A\n1,10:00,0\n"), contains("f:2:3: error: time: expected a local time"));
+  CHECK_THAT(refusal_of("time_s,time,A\n1,2026-03-02T08:00:01,0\n2,,0\n"), contains("f:3:3: error: time: expected"));
 }
 
 TEST_CASE("rows that don't ascend by one step are refused", "[rows]") {
