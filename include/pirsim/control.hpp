@@ -131,7 +131,8 @@ struct LightCosts {
   std::vector<double> rule_delays_min;
   People people = People::known;
   std::int64_t days = 0;
-  /// What "a day" divides by: days less what isn't known of them, a run of more than 24 h by its hours.
+  /// What "a day" divides by: days less what isn't known of them, a run of more than 24 h by its hours, dates by the
+  /// part that the rows cover, but a day at least.
   double known_days = 0.0;
   double hours = 0.0;  ///< that count: of rows in which all of its sensors are known
   double unknown_h = 0.0;

@@ -29,7 +29,10 @@ double at_most_a_week(const LightCosts& light, const DelayCosts& at) {
 }
 
 std::string minutes(const DelayCosts& at) { return shortest_number(at.delay_min) + " min"; }
-std::string hours(double h) { return h < 0.1 ? fixed(60.0 * h, 0) + " min" : fixed(h, 1) + " h"; }
+std::string hours(double h) {
+  const double s = std::round(3600.0 * h);
+  return s < 60.0 ? fixed(s, 0) + " s" : h < 0.1 ? fixed(s / 60.0, 1) + " min" : fixed(h, 1) + " h";
+}
 std::string allowed(const LightCosts& light) {
   const double times = light.at_most_a_week;
   return "less than " + (times == 1.0 ? "once" : shortest_number(times) + " times") + " a week";
@@ -82,9 +85,11 @@ std::string best_guess(const LightCosts& light, const DelayCosts& at) {
   const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0));
   const std::string seen =
       at.false_offs == 0 ? "no false-off" : counted(static_cast<std::size_t>(at.false_offs), "false-off");
-  return fixed(light.known_days, 1) + " days are too few to tell which delay goes off on somebody " + allowed(light) +
-         ": " + fixed(enough, 0) + " without a false-off would do. The best guess is " + minutes(at) + ": " + seen +
-         " in " + hours(light.occupied_h) + " of occupied time, which shows less than one in " +
+  const double days = std::round(10.0 * light.known_days) / 10.0;
+  return shortest_number(days) + (days == 1.0 ? " day is" : " days are") +
+         " too few to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
+         " without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
+         hours(light.occupied_h) + " of occupied time, which shows less than one in " +
          hours(light.occupied_h / most_expected(at.false_offs)) + " (95 %), and " + empty_light(light, at) +
          compared(light, at) + dark_all_the_same(at);
 }

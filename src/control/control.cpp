@@ -108,10 +108,12 @@ class Light {
     is_on_.assign(columns_.sensors.size(), true);  // since before, if it is in the first row
     began_behind_.assign(columns_.sensors.size(), false);
     row_ = gap_rows_ = 0;
-    open_at_ = -1;  // shut when the run began, if it is shut at all
+    open_at_ = -1;  // just shut when the run began, if it is shut at all
     begin_people();
   }
-  void begin_day() { days_.emplace_back().by_delay.resize(delays_min_.size()); }
+  void begin_day(DayKind kind) {
+    days_.push_back({.kind = kind, .by_delay = decltype(DaySums::by_delay)(delays_min_.size())});
+  }
 
   /// 0, 1, or 2 where not known. hour: of the day at its end.
   std::uint8_t add(const Sample& row, int people, std::optional<double> hour) {
@@ -324,6 +326,8 @@ LightCosts Light::costs(People people) const {
     if (day.rows > 0) days.push_back(&day);
   }
   costs.days = static_cast<std::int64_t>(days.size());
+  const double dark_h = spec_.to_h - spec_.from_h + (spec_.to_h < spec_.from_h ? 24.0 : 0.0);
+  double covered = 0.0;  // days
   std::vector<double> hours, occupied;
   for (const DaySums* day : days) {
     hours.push_back(day->rows * row_h);
@@ -331,8 +335,12 @@ LightCosts Light::costs(People people) const {
     costs.hours += hours.back();
     costs.occupied_h += occupied.back();
     costs.span_h += day->span() * row_h;
-    costs.known_days += std::max(1.0, day->all * row_h / 24.0) * day->rows / (day->rows + day->unknown);
+    const double in_rows = day->rows + day->unknown;
+    const double of_it = day->kind == DayKind::run ? std::max(1.0, day->all * row_h / 24.0) : in_rows * row_h / dark_h;
+    covered += of_it;
+    costs.known_days += of_it * day->rows / in_rows;
   }
+  if (covered > 0.0 && covered < 1.0) costs.known_days /= covered;  // an hour tells nothing of the others
   const bool knows = people == People::known;
   const auto if_known = [knows](double value) { return knows ? value : std::nan(""); };
   if (!knows) occupied.assign(occupied.size(), 0.0);
@@ -420,7 +428,7 @@ LitRow Control::add(const Sample& row, std::string_view day) {
     state.replicate = row.replicate, state.trial = row.trial, state.day = day;
     for (Light& light : state.lights) {
       if (is_new_run) light.begin();
-      light.begin_day();
+      light.begin_day(day.empty() ? DayKind::run : DayKind::date);
     }
   }
   const std::optional<std::int64_t> ends_s = clock_s(row);

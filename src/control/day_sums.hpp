@@ -13,8 +13,12 @@ struct DelaySums {
   std::int32_t lit = 0, lit_empty = 0, dark = 0, false_offs = 0, switched_on = 0;
 };
 
+/// Of a run nothing is left out; of a date there may be rows of a part alone.
+enum class DayKind { run, date };
+
 /// Of one day.
 struct DaySums {
+  DayKind kind = DayKind::run;
   std::int32_t all = 0, rows = 0, unknown = 0, occupied = 0;  ///< all: by daylight too; rows: that count
   std::int32_t first_occupied = -1, last_occupied = -1;       ///< of the rows that count; -1: nobody came
   std::vector<DelaySums> by_delay;

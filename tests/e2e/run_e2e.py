@@ -453,7 +453,7 @@ class Light(unittest.TestCase):
     def test_which_delay_to_take_is_told_by_default(self):
         lines = [f"{day},a,{60 * i},x,1,{int(i % 8 == 1)}\n" for day in range(1, 25) for i in range(1, 121)]
         weeks = write(self.folder, "weeks.csv", "replicate,trial,time_s,phase,people,PIR1\n" + "".join(lines))
-        sentence = "light: 7 min: off on somebody less than once a week, 0 min of empty light a day; at 10 min not once, and 0 min."
+        sentence = "light: 7 min: off on somebody less than once a week, 0 s of empty light a day; at 10 min not once, and 0 s."
         told = pirsim("control", weeks, "--report", self.folder / "light.html")
         self.assertIn(sentence, told.stdout)
         self.assertIn(sentence, (self.folder / "light.html").read_text())

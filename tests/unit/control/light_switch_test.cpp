@@ -204,3 +204,26 @@ TEST_CASE("a run of several days is as many days, and what isn't known is none o
   CHECK(costs.known_days == Approx(2.0));
   CHECK(costs.at(0.0).switched_on_a_day == Approx(6.0));
 }
+
+TEST_CASE("a log's first and last date are days in part, and an hour isn't told as if it were a day of such") {
+  const auto costs_of = [](int from_h, int to_h, LightSpec light) {
+    light.delays_min = {0.0};
+    Control control({"t", {light}}, {{"PIR"}, {}, {}}, 3600.0);
+    for (int i = from_h + 1; i <= to_h; ++i) {
+      Sample row;
+      row.time_s = 3600.0 * (i - from_h);
+      row.clock = clock_text(20'514 + i / 24, 3600.0 * (i % 24));
+      row.bits = {1};
+      control.add(row, clock_text(20'514 + (i - 1) / 24, 0.0).substr(0, 10));
+    }
+    return control.finish().lights.front();
+  };
+  LightSpec night;
+  night.from_h = 18.0, night.to_h = 6.0;
+  CHECK(costs_of(12, 12 + 72, {}).days == 4);
+  CHECK(costs_of(12, 12 + 72, {}).known_days == Approx(3.0));
+  CHECK(costs_of(12, 12 + 72, night).known_days == Approx(3.0));  // of twelve hours
+  CHECK(costs_of(18, 18 + 12, night).known_days == Approx(1.0));
+  CHECK(costs_of(10, 11, {}).known_days == Approx(1.0));
+  CHECK(costs_of(10, 11, {}).a_day(1.0) == Approx(1.0));
+}

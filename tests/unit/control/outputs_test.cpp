@@ -164,17 +164,16 @@ TEST_CASE("the advice is the shortest delay that the days show to be long enough
   const Advice short_of = advise(costs_of(20, {7})), shown = advise(costs_of(21, {7}));
   CHECK(short_of.ground == Ground::too_few_days);
   CHECK(short_of.delay_min == 7.0);
-  CHECK_THAT(short_of.sentence,
-             contains("desk: 20.0 days are too few to tell which delay goes off on somebody less than "
-                      "once a week: 21 without a false-off would do. The best guess is 7 min: no "
-                      "false-off in 200.0 h of occupied time, which shows less than one in 67"));
+  CHECK_THAT(short_of.sentence, contains("desk: 20 days are too few to tell which delay goes off on somebody less than "
+                                         "once a week: 21 without a false-off would do. The best guess is 7 min: no "
+                                         "false-off in 200.0 h of occupied time, which shows less than one in 67"));
   CHECK(shown.ground == Ground::shown);
   CHECK(shown.delay_min == 7.0);
   CHECK(shown.sentence ==
-        "desk: 7 min: off on somebody less than once a week, 0 min of empty light a day; at 10 min "
-        "not once, and 0 min.");
+        "desk: 7 min: off on somebody less than once a week, 0 s of empty light a day; at 10 min "
+        "not once, and 0 s.");
   // 75 a day: pauses of 7 minutes and the minute of motion.
-  CHECK_THAT(advise(costs_of(21, {7}, 7.0)).sentence, contains("at 5 min 75.0 times a day, and 0 min."));
+  CHECK_THAT(advise(costs_of(21, {7}, 7.0)).sentence, contains("at 5 min 75.0 times a day, and 0 s."));
   CHECK(advise(costs_of(5, {7}, 10.0, 7.0)).ground == Ground::shown);  // once a day: 3 days
   CHECK(advise(costs_of(2, {7}, 10.0, 7.0)).ground == Ground::too_few_days);
   const Advice never = advise(costs_of(21, {7, 90}));
