@@ -28,6 +28,7 @@ class RowFiles {
  public:
   explicit RowFiles(std::span<const std::filesystem::path> paths);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
   void each(const TakeRow& take) const;
 
  private:
