@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Literal, NamedTuple
 
 from . import _core
+from ._files import write
 from ._study import Overrides, PathOr, as_file, as_overrides, as_path, as_scene, data_directory, folders
 from .specs import Frame, Point3, Scene, Script, SensorModel
 
@@ -55,8 +56,7 @@ def write_scene(scene: Scene, file: PathOr) -> None:
 
 def write_script(script: Script, file: PathOr) -> None:
     """Writes a script as YAML for the command line."""
-    with open(file, "w", encoding="utf-8") as out:
-        out.write(_core.to_yaml(script))
+    write(file, _core.to_yaml(script))
 
 
 def sensor_model(name: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None) -> SensorModel:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Iterable, Literal, NamedTuple, Sequence, Union
 
 from . import _core
+from ._files import write
 from ._study import (Overrides, PathOr, Progress, _handle_of, Model, as_count, as_file, as_input, as_overrides, as_path, as_scene,
                      as_threads, folders)
 from .errors import Error, InputWarning
@@ -47,8 +48,7 @@ class Picture:
 
     def save(self, file: PathOr) -> None:
         """Writes a PNG file."""
-        with open(file, "wb") as out:
-            out.write(self.png)
+        write(file, self.png)
 
 
 def preview(model: Model, run: int = 0, *, time_s: float | None = None, beams: Beams | None = None,
@@ -88,8 +88,7 @@ class Page:
 
     def save(self, file: PathOr) -> None:
         """Writes an HTML file."""
-        with open(file, "w", encoding="utf-8") as out:
-            out.write(self.html)
+        write(file, self.html)
 
 
 def view(model: Model, run: int = 0, *, from_s: float | None = None, to_s: float | None = None,

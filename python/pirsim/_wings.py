@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import warnings
 from dataclasses import dataclass, field
 from typing import Any, Iterable, NamedTuple
 
 from . import _core
+from ._files import keep_inputs
 from ._result import Result
 from ._study import (Overrides, PathOr, Progress, as_count, as_file, as_input, as_overrides, as_path, as_seed, as_threads,
                      folders)
@@ -92,6 +94,10 @@ class Reconciliation:
     """The script with the named effects added."""
 
 
+_REPORT = "where.csv", "candidates.csv", "script_patched.yaml", "report.html", "report.json", "trail.log"
+"""What reconcile() writes into its folder."""
+
+
 def _rows_of(result: Result) -> str:
     """As the command line writes them."""
     columns: dict[str, Any] = result._columns()
@@ -124,6 +130,9 @@ def reconcile(scene: PathOr | Scene, script: PathOr | Script, measured: PathOr |
     question.effects = list(effects or [])
     question.nuisance = as_path(nuisance or "")
     question.folder, question.table = as_path(folder or ""), as_path(table or "")
+    given = [("scene", scene), ("script", script), ("measured", measured), ("nuisance", nuisance)]
+    keep_inputs([("folder", os.path.join(folder, name)) for name in _REPORT] if folder else [],
+                [(name, file) for name, file in given if isinstance(file, (str, os.PathLike))])
     name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (as_path(measured), "")
     parts = _core.reconcile(as_input(scene, Scene), as_input(script, Script, set), name, text, as_overrides(set),
                             *folders(sensors), question, as_seed(seed), as_threads(threads), progress)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import json
 import pathlib
 import re
 import subprocess
@@ -26,6 +27,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterable
 
 from . import __version__, git_revision, read_scene, read_script
+from ._files import keep_inputs, require_place, write
 from ._study import PathOr, as_file
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InternalError,
                      UsageError)
@@ -36,6 +38,12 @@ __all__ = ["run_dataset", "run_study"]
 Progress = Callable[[int, int], None]
 _DIAGNOSTIC = re.compile(r"^(?:(?P<file>.+?)(?::(?P<line>\d+):(?P<column>\d+))?: )?"
                          r"(?P<severity>error|warning): (?P<text>.*)$", re.MULTILINE)
+
+
+_MORE_THAN_ROOM_DAYS = 10**9
+_MADE_FROM = ("version", "git_revision", "compiler", "embree", "seed", "study_runs", "inputs", "responses",
+              "resolved_script")
+"""Of a shard's manifest: docs/formats/manifest.md."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +63,8 @@ def run_study(client: Any, scene: PathOr, script: PathOr, output: PathOr, *, sha
     """Simulates a study on the workers of `client` and writes its rows.
 
     output: as `pirsim -o`; beside it a folder `<output>.shards` keeps the shards, and a call with shards in it simulates
-    those that are missing alone. marks, sensors: as in `pirsim.compile`. arguments: further ones of the command,
+    those that are missing alone. Shards of another study, seed, build or number of shards are refused, as `--resume`
+    does. marks, sensors: as in `pirsim.compile`. arguments: further ones of the command,
     ["--set", "seed=2"]. command: how workers and
     this machine call pirsim, instead of the package's own. progress: called with the number of shards that are there,
     and of all. Throws what `pirsim.run` throws.
@@ -66,20 +75,25 @@ def run_study(client: Any, scene: PathOr, script: PathOr, output: PathOr, *, sha
     given = [*_named("--marks", [str(marks)] if marks else []), *_named("--sensors", folders)]
     arguments = ["--scene", scene, "--script", script, *given, *arguments]
     work = _work(arguments, files, shards, command)
+    keep_inputs([("output", output), ("the manifest of output", f"{output}.json")],
+                [("the study", file.path) for file in files])
+    require_place(output)
     folder = pathlib.Path(f"{output}.shards")
-    missing = [index for index in range(1, shards + 1)
-               if not (folder / f"shard-{index:04}-of-{shards:04}.csv.json").exists()]
-    _make(client, work, missing, folder, progress)
+    there = _shards_there(work, folder)
+    _make(client, work, [index for index in range(1, shards + 1) if index not in there], folder, progress)
     _call(work, ["merge", str(folder), "-o", str(output)])
 
 
 def run_dataset(client: Any, recipe: PathOr, folder: PathOr, *, shards: int, sensors: Iterable[PathOr] = (),
                 arguments: Iterable[str] = (), command: Iterable[str] = (), progress: Progress | None = None) -> None:
-    """Makes a dataset on the workers of `client`; arguments as those of `run_study`."""
+    """Makes a dataset on the workers of `client`; arguments as those of `run_study`. A folder of another dataset, or
+    that has such files already, is refused as by `pirsim dataset`."""
     recipe = as_file(recipe, "recipes")
     arguments = ["dataset", recipe, *_named("--sensors", map(str, sensors)), *arguments]
     digest = hashlib.sha256(pathlib.Path(recipe).read_bytes()).hexdigest()
     work = _work(arguments, [InputFile(recipe, digest)], shards, command)
+    # A shard to which no room-day falls: the command looks whether the folder is this dataset's, and claims it.
+    _call(work, [*arguments, "-o", str(folder), "--shard", f"1/{_MORE_THAN_ROOM_DAYS}", "--quiet"])
     _make(client, work, range(1, shards + 1), pathlib.Path(folder), progress)
     _call(work, [*arguments, "-o", str(folder), "--finish", "--quiet"])
 
@@ -92,6 +106,27 @@ def _work(arguments: Iterable[str], files: Iterable[InputFile], shards: int, com
     if shards < 1:
         raise _error(ErrorCode.USAGE, f"shards: expected 1 or more, got {shards}")
     return _Work(tuple(arguments), tuple(files), shards, tuple(command), f"{__version__} ({git_revision})")
+
+
+def _shards_there(work: _Work, folder: pathlib.Path) -> set[int]:
+    """Those that are whole. The command itself says whether the first of them is this study's (else InputError, or
+    UsageError for another number of shards); the others must be made from what that one is."""
+    there: dict[int, Any] = {}
+    for manifest in sorted(folder.glob("shard-*.json")):
+        try:
+            tree = json.loads(manifest.read_text(encoding="utf-8"))
+            index, made = int(tree["shard"]["index"]), {key: tree.get(key) for key in _MADE_FROM}
+        except (KeyError, TypeError, ValueError):
+            continue  # it is damaged, and made anew
+        if not manifest.with_suffix("").exists():
+            continue
+        if not there:
+            _call(work, [*work.arguments, "--shard", f"{min(index, work.shards)}/{work.shards}", "-o", str(folder),
+                         "--resume", "--threads", "1", "--quiet"])
+        elif made != next(iter(there.values())):
+            raise _error(ErrorCode.INPUT, "isn't made from what the shards before it are: remove it", str(manifest))
+        there[index] = made
+    return set(there)
 
 
 def _make(client: Any, work: _Work, missing: Iterable[int], folder: pathlib.Path, progress: Progress | None) -> None:
@@ -113,10 +148,10 @@ def _make(client: Any, work: _Work, missing: Iterable[int], folder: pathlib.Path
 
 
 def _put(file: pathlib.Path, content: bytes) -> None:
+    if file.name == "provenance.txt" and file.read_bytes() != content:
+        raise _error(ErrorCode.INPUT, "a worker made its part from other inputs", str(file))
     file.parent.mkdir(parents=True, exist_ok=True)
-    arriving = file.with_name(file.name + ".arriving")
-    arriving.write_bytes(content)
-    arriving.replace(file)
+    write(file, content)
 
 
 def _shard(work: _Work, index: int) -> dict[str, bytes]:

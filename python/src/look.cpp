@@ -3,6 +3,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <filesystem>
 #include <pirsim/look.hpp>
 
 #include "attend.hpp"
@@ -51,6 +52,13 @@ nb::dict page(const Model& model, std::uint32_t run, std::optional<double> from_
 
 double export_to(const Model& model, const std::string& file, std::uint32_t run, const std::vector<std::string>& beams,
                  double keys_per_s) {
+  for (const auto* read : {&model.scene().files, &model.script().files}) {
+    for (const InputFile& input : *read) {
+      std::error_code unknown;
+      if (std::filesystem::equivalent(file, input.path, unknown))
+        throw Error(ErrorCode::usage, "file: '" + file + "' is one that the model was read from");
+    }
+  }
   double length_s = 0.0;
   attend(nb::none(), [&](Job&) { length_s = export_run(file, model, {run, beams, keys_per_s, {}, {}}); });
   return length_s;

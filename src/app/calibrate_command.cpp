@@ -105,7 +105,7 @@ void run(const CalibrateOptions& options) {
   require_rooms(recipe, static_cast<int>(rows.sensors.size()));
   DatasetWork pool = *options.pool;
   pool.folder = options.folder / "pool";
-  std::filesystem::create_directories(options.folder);
+  make_folder(options.folder);
   const StopRequest stop;
   if (make_dataset(recipe, pool, stop) == Whole::no) return;
   const Progress progress({.what = "weighing rooms"}, pool.inputs.verbosity);
@@ -136,10 +136,11 @@ void add_calibrate_command(CLI::App& app) {
 )");
   const auto options = std::make_shared<CalibrateOptions>();
   options->pool->start = dataset::DatasetOptions::Start::resume;  // rooms are the same, whatever the log
-  as_input(command.add_option("RECIPE", options->recipe, "what is known of the room: a recipe, as of pirsim dataset"))
+  offer_input_file(command, "RECIPE", options->recipe, "what is known of the room: a recipe, as of pirsim dataset")
       ->required();
   offer_log(command, options->log);
-  offer_output(command, options->folder, "DIR", "folder of what is made");
+  offer_output_folder(command, output_names, options->folder, "folder of what is made",
+                      {"recipe.yaml", "weights.csv", "counter.json", "calibration.json", "calibration.html", "pool"});
   command
       .add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")
       ->option_text("SECONDS")

@@ -28,7 +28,6 @@ void refuse_to_overwrite(const std::filesystem::path& file) {
 
 void suggest(const Inputs& inputs, const CheckOptions& options) {
   if (!inputs.marks.empty()) throw Error(ErrorCode::usage, "--suggest makes marks; it doesn't go with --marks");
-  check_outputs({{"-o", options.output, {".yaml", ".yml"}}}, inputs);
   refuse_to_overwrite(options.output);
   const std::string name = io::name_of_input(inputs.scene);
   const std::string text = [&] {
@@ -91,7 +90,8 @@ void add_check_command(CLI::App& app) {
                   "of --suggest: a node to leave out with all below it, as `ignore` of marks; repeatable")
       ->option_text("NODE")
       ->allow_extra_args(false);
-  offer_output(command, options->output, "FILE", "of --suggest: marks, .yaml (default: standard output)");
+  offer_output(command, output_names, options->output, "of --suggest: marks, .yaml (default: standard output)",
+               {".yaml", ".yml"});
   on_call(
       command, inputs, [options](const Inputs& given) { check(given, *options); }, Needs::scene);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/dataset_work.hpp"
 #include "app/log_inputs.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
@@ -197,17 +198,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
   tell_written({{options.output}, {options.light}, {options.schedule}, {options.report}}, options.inputs.verbosity);
 }
 
-void check_files(const ControlOptions& options) {
-  const std::vector<NamedOutput> outputs{{"-o", options.output, {".csv"}},
-                                         {"--light", options.light, io::table_endings()},
-                                         {"--schedule", options.schedule, {".csv"}},
-                                         {"--report", options.report, {".html"}}};
-  check_outputs(outputs, options.inputs);
-  std::vector<std::string> read{options.rule.string(), options.log.map.string()};
-  for (const auto* files : {&options.rows, &options.log.files}) {
-    for (const std::filesystem::path& file : *files) read.push_back(file.string());
-  }
-  keep_inputs(outputs, read);
+void check_options(const ControlOptions& options) {
   if (options.rows.empty() == options.log.files.empty())
     throw Error(ErrorCode::usage, "say which rows: files of runs, a dataset's folder, or --log");
   for (auto delay = options.delays_min.begin(); delay != options.delays_min.end(); ++delay) {
@@ -219,8 +210,12 @@ void check_files(const ControlOptions& options) {
 }
 
 void control_light(const ControlOptions& options) {
-  check_files(options);
-  if (!options.rows.empty()) return control_rows(options, control::RowFiles(options.rows));
+  check_options(options);
+  if (!options.rows.empty()) {
+    const control::RowFiles rows(options.rows);
+    keep_inputs(options.inputs, rows.files());
+    return control_rows(options, rows);
+  }
   const Log log = read_log(options.log, options.inputs.verbosity);
   control_rows(options, control::LogSamples(log, options.window_s));
 }
@@ -236,8 +231,9 @@ void add_control_command(CLI::App& app) {
   pirsim control --log week.csv --delay 5 --report light.html        of a log: when it would have been lit
 )");
   const auto options = std::make_shared<ControlOptions>();
-  as_input(command.add_option("rows", options->rows, "rows of runs, a dataset's folder, or what pirsim log -o writes"))
-      ->option_text("ROWS...");
+  CLI::Option* rows =
+      command.add_option("rows", options->rows, "rows of runs, a dataset's folder, or what pirsim log -o writes");
+  declare_inputs(command, as_input(rows)->option_text("ROWS..."), options->rows, dataset_contents());
   offer_log(command, options->log);
   command.get_option("--log")->required(false);
   command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")
@@ -259,16 +255,14 @@ void add_control_command(CLI::App& app) {
   offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
   offer_input_file(command, "--script", inputs.script,
                    "with --scene: what made the rows, for links to the worst moments and seats that no sensor notices");
-  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
-  offer_output(command, options->output, "FILE", "costs by light and delay, .csv");
-  command.add_option("--report", options->report, "a page with the curves, the lit times and the worst moments, .html")
-      ->option_text("FILE");
-  command.add_option("--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
-  command.add_option("--schedule", options->schedule, "shares of time lit and present, for EnergyPlus, .csv")
-      ->option_text("FILE");
+  offer_sensors(command, inputs);
+  offer_output(command, output_names, options->output, "costs by light and delay, .csv", {".csv"});
+  offer_output(command, "--report", options->report,
+               "a page with the curves, the lit times and the worst moments, .html", {".html"});
+  offer_output(command, "--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst",
+               io::table_endings());
+  offer_output(command, "--schedule", options->schedule, "shares of time lit and present, for EnergyPlus, .csv",
+               {".csv"});
   command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")
       ->option_text("MINUTES");
   offer_quiet(command, inputs.verbosity);

@@ -62,11 +62,10 @@ void add_count_command(CLI::App& app) {
   pirsim count DIR/counter.json --log week.csv --forward      as it could have been told at each moment
 )");
   const auto options = std::make_shared<CountOptions>();
-  as_input(command.add_option("COUNTER", options->counter, "counter.json of pirsim calibrate"))->required();
+  offer_input_file(command, "COUNTER", options->counter, "counter.json of pirsim calibrate")->required();
   offer_log(command, options->log);
-  offer_output(command, options->output, "FILE", "counts as CSV (default: standard output)");
-  command.add_option("--report", options->report, "a page with the log and the counts as time lines")
-      ->option_text("FILE");
+  offer_output(command, output_names, options->output, "counts as CSV (default: standard output)");
+  offer_output(command, "--report", options->report, "a page with the log and the counts as time lines");
   command.add_flag_callback(
       "--forward", [options] { options->pass = counting::Pass::forward; },
       "each reading by those before it alone (default: by those after it as well)");

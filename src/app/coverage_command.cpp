@@ -53,7 +53,6 @@ void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, cons
 }
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
-  check_outputs({{"--report", options.report, {".html"}}}, inputs);
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
@@ -83,7 +82,8 @@ void add_coverage_command(CLI::App& app) {
   const auto options = std::make_shared<CoverageOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "DIR", "folder for maps and figures (default: coverage)");
+  offer_output_folder(command, output_names, options->output, "folder for maps and figures (default: coverage)",
+                      {"coverage.csv", "*.png"});
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { coverage(given, *options); });

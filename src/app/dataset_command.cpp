@@ -13,8 +13,8 @@ void add_dataset_command(CLI::App& app) {
 )");
   const auto work = std::make_shared<DatasetWork>();
   const auto file = std::make_shared<std::filesystem::path>();
-  as_input(command.add_option("RECIPE", *file, "what the rooms, people and days are like: a YAML file"))->required();
-  offer_output(command, work->folder, "DIR", "folder of the dataset");
+  offer_input_file(command, "RECIPE", *file, "what the rooms, people and days are like: a YAML file")->required();
+  offer_output_folder(command, output_names, work->folder, "folder of the dataset", dataset_contents());
   command.add_flag_callback(
       "--resume", [work] { work->start = dataset::DatasetOptions::Start::resume; },
       "keep the room-days that are there (without it, all are made anew)");

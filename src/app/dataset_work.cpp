@@ -5,6 +5,7 @@
 
 #include "app/session.hpp"
 #include "core/text.hpp"
+#include "dataset/recipe.hpp"
 #include "studies/campaign.hpp"
 
 namespace pirsim::app {
@@ -72,9 +73,23 @@ void tell_what_is_missing(const DatasetWork& work, const dataset::RecipeSpec& re
 
 }  // namespace
 
+std::vector<std::filesystem::path> scenes_of(const dataset::RecipeSpec& recipe) {
+  std::vector<std::filesystem::path> files;
+  for (const dataset::RoomGroupSpec& group : recipe.rooms) {
+    for (const dataset::OwnScene& scene : group.scenes) {
+      files.push_back(scene.file);
+      if (!scene.marks.empty()) files.push_back(scene.marks);
+    }
+  }
+  return files;
+}
+
 dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work) {
   const Progress progress({.what = "reading " + file.filename().string()}, work.inputs.verbosity);
-  return dataset::read_recipe(found(io::DataKind::recipes, file), work.inputs.overrides, data_directories());
+  dataset::RecipeSpec recipe =
+      dataset::read_recipe(found(io::DataKind::recipes, file), work.inputs.overrides, data_directories());
+  keep_inputs(work.inputs, scenes_of(recipe));
+  return recipe;
 }
 
 Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, const StopRequest& stop) {
@@ -94,6 +109,12 @@ Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, c
   }
   tell_what_is_missing(work, recipe, options);
   return Whole::no;
+}
+
+std::vector<std::string> dataset_contents() {
+  std::vector<std::string> contents{dataset::dataset_parts.begin(), dataset::dataset_parts.end()};
+  contents.insert(contents.end(), {"provenance.txt", "*.journal"});
+  return contents;
 }
 
 void offer_dataset_work(CLI::App& command, const std::shared_ptr<DatasetWork>& work) {

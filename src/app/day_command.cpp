@@ -143,7 +143,7 @@ void day(const Inputs& inputs, const DayOptions& options) {
     require_written();
     return;
   }
-  check_options(inputs, options.run);
+  check_options(options.run);
   run(load(inputs, std::move(script)), inputs, options.run);
 }
 

@@ -1,24 +1,10 @@
 #include "app/drawn_scene.hpp"
 
+#include "app/dataset_work.hpp"
 #include "app/session.hpp"
 #include "dataset/recipe.hpp"
 
 namespace pirsim::app {
-namespace {
-
-std::vector<std::string> scenes_of(const dataset::RecipeSpec& recipe) {
-  std::vector<std::string> files;
-  for (const dataset::RoomGroupSpec& group : recipe.rooms) {
-    for (const dataset::OwnScene& scene : group.scenes) {
-      files.push_back(scene.file.string());
-      if (!scene.marks.empty()) files.push_back(scene.marks.string());
-    }
-  }
-  return files;
-}
-
-}  // namespace
-
 void offer_setting(CLI::App& command, DrawOptions& options, const std::string& name, const std::string& key,
                    const std::string& value, const std::string& what) {
   command
@@ -33,7 +19,7 @@ void offer_setting(CLI::App& command, DrawOptions& options, const std::string& n
 }
 
 void offer_drawing(CLI::App& command, DrawOptions& options, const std::string& what) {
-  as_input(command.add_option("RECIPE", options.recipe, "take the ranges of its rooms: docs/formats/dataset.md"));
+  offer_input_file(command, "RECIPE", options.recipe, "take the ranges of its rooms: docs/formats/dataset.md");
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -43,16 +29,14 @@ void offer_drawing(CLI::App& command, DrawOptions& options, const std::string& w
           "any other key of a " + what + " (docs/formats/dataset.md)")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
-  command.add_option("--sensors", options.inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
+  offer_sensors(command, options.inputs);
   command.add_option("--seed", options.seed, "of all random streams (default: 1, or the recipe's)")
       ->option_text("N")
       ->check(is_seed());
   command.add_option("--number", options.number, "which " + what + " of this seed or recipe (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 1'000'000));
-  offer_output(command, options.output, "FILE", "the " + what + ", .gltf or .glb");
+  offer_output(command, output_names, options.output, "the " + what + ", .gltf or .glb", {".gltf", ".glb"});
   offer_quiet(command, options.inputs.verbosity);
 }
 
@@ -78,7 +62,7 @@ dataset::RecipeSpec recipe_to_draw_from(const DrawOptions& options) {
     throw Error(ErrorCode::usage, "a recipe says what its rooms are like: no other options");
   dataset::RecipeSpec recipe =
       dataset::read_recipe(found(io::DataKind::recipes, options.recipe), {}, data_directories());
-  keep_inputs({{"-o", options.output}}, scenes_of(recipe));
+  keep_inputs(options.inputs, scenes_of(recipe));
   if (!dataset::group_of(recipe, options.number).scenes.empty()) {
     throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +
                                       dataset::own_scene(recipe, options.number)->file.string() + "'");
@@ -89,7 +73,6 @@ dataset::RecipeSpec recipe_to_draw_from(const DrawOptions& options) {
 void check_scene_output(const DrawOptions& options, const std::string& example) {
   if (options.output.empty())
     throw Error(ErrorCode::usage, "-o FILE is missing: " + example + ".gltf or " + example + ".glb");
-  check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, {});
 }
 
 std::string listed(const std::vector<std::string>& ids) {

@@ -42,9 +42,7 @@ double write_film(const Model& model, FilmRequest film, const ExportOptions& opt
 }
 
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
-  check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
   const Model model = load(inputs);
-  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   const std::uint32_t run = find_run(model, options.run);
   const std::optional<RunClock> clock = model.compiled().clock_of(run);
   FilmRequest film = options.film;
@@ -70,7 +68,8 @@ void add_export_command(CLI::App& app) {
   offer_study(command, *inputs);
   offer_tracer(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "FILE", "glTF file, .gltf or .glb (default: run.glb)");
+  offer_output(command, output_names, options->output, "glTF file, .gltf or .glb (default: run.glb)",
+               {".gltf", ".glb"});
   offer_run_choice(command, options->run);
   offer_moment(command, "--from", options->from, "where the film begins", "the run's beginning");
   offer_moment(command, "--to", options->to, "where the film ends", "the run's end");

@@ -69,17 +69,7 @@ void write_report(const Log& log, const LogFacts& facts, const LogOptions& optio
   io::write_report(options.report, report);
 }
 
-void check_files(const LogOptions& options) {
-  const std::vector<NamedOutput> outputs{{"-o", options.output, io::table_endings()},
-                                         {"--report", options.report, {".html"}}};
-  check_outputs(outputs, {});
-  std::vector<std::string> read{options.map.string()};
-  for (const std::filesystem::path& file : options.files) read.push_back(file.string());
-  keep_inputs(outputs, read);
-}
-
 void run_log(const LogOptions& options) {
-  check_files(options);
   const Log log = read(options);
   tell(log.remarks, options.verbosity);
   if (options.prints_map) {
@@ -105,9 +95,9 @@ void add_log_command(CLI::App& app) {
   pirsim log week.csv --report week.html                           a page: the days as time lines
 )");
   const auto options = std::make_shared<LogOptions>();
-  as_input(
-      command.add_option("files", options->files, "the log: CSV, or events as Home Assistant and CASAS write them"))
-      ->option_text("FILE...");
+  CLI::Option* files = as_input(
+      command.add_option("files", options->files, "the log: CSV, or events as Home Assistant and CASAS write them"));
+  declare_inputs(command, files->option_text("FILE..."), options->files);
   offer_input_file(command, "--map", options->map, "what its columns mean, YAML");
   command.add_option("--time-zone", options->time_zone, "in which local time it is told, as Europe/Berlin")
       ->option_text("ZONE");
@@ -117,12 +107,11 @@ void add_log_command(CLI::App& app) {
       .add_option("--window", options->window_s,
                   "length of a row's window (default: 30, or the log's interval if longer)")
       ->option_text("SECONDS");
-  offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
-  command.add_option("--report", options->report, "a page with the days as time lines, .html")->option_text("FILE");
+  offer_output(command, output_names, options->output, "rows, .csv, .csv.gz or .csv.zst", io::table_endings());
+  offer_output(command, "--report", options->report, "a page with the days as time lines, .html", {".html"});
   command.add_flag("--print-map", options->prints_map, "print the map that it was read by, and nothing else");
   offer_quiet(command, options->verbosity);
-  command.callback([&command, options] {
-    require_one_standard_input(command);
+  command.callback([options] {
     if (options->files.empty()) throw Error(ErrorCode::usage, "FILE is missing; see pirsim log --help");
     run_log(*options);
   });

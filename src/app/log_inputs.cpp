@@ -6,7 +6,10 @@
 namespace pirsim::app {
 
 void offer_log(CLI::App& command, LogInputs& log) {
-  command.add_option("--log", log.files, "the log; several files are parts of one")->option_text("FILE")->required();
+  CLI::Option* files = command.add_option("--log", log.files, "the log; several files are parts of one")
+                           ->option_text("FILE")
+                           ->required();
+  declare_inputs(command, files, log.files);
   offer_input_file(command, "--map", log.map, "what the log's columns mean (pirsim log --print-map)");
   command.add_option("--time-zone", log.time_zone, "where the room is, as Europe/Berlin: for times of day")
       ->option_text("ZONE");

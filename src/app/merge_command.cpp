@@ -20,6 +20,7 @@ struct MergeOptions {
   std::filesystem::path script;        ///< for the summary
   std::vector<std::string> overrides;  ///< of the script
   Verbosity verbosity = Verbosity::normal;
+  const Files* files = nullptr;  ///< of the command
 };
 
 /// The script of the shards, read again for what a summary wants to know of it.
@@ -42,22 +43,14 @@ std::vector<std::string> trial_ids(const ScriptSpec& script) {
   return ids;
 }
 
-/// Nor may a shard be taken for the whole.
-void keep_shards(const std::string& option, const std::filesystem::path& output, const std::filesystem::path& folder) {
-  if (!output.empty() && is_below(output, folder) && studies::shard_of(output.filename().string()))
-    throw Error(ErrorCode::usage, option + ": '" + output.string() + "' is named as one of the shards");
-}
-
 void merge(const MergeOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing");
-  check_outputs({{"-o", options.output, io::table_endings()}, {"--summary", options.summary, summary_endings()}}, {});
-  keep_shards("-o", options.output, options.folder);
   ScriptSpec script;
   std::optional<io::AtomicFile> file;
   std::optional<studies::RowTally> tally;
   if (!options.summary.empty()) {
     script = script_of(options);
-    keep_inputs({{"-o", options.output}, {"--summary", options.summary}}, files_read(script, {}));
+    options.files->keep(files_read(script, {}));
     file.emplace(options.summary);
     tally.emplace(trial_ids(script), script.summary, measured_cells(script));
   }
@@ -83,18 +76,27 @@ void merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge_command(CLI::App& app) {
-  CLI::App& command = add_command(app, "merge", "join shards into one file, identical to a single process's", R"(
+  Command& command = add_command(app, "merge", "join shards into one file, identical to a single process's", R"(
   pirsim merge out -o rows.csv.zst
   pirsim merge out -o rows.csv --script study.yaml --summary table.md
 )");
   const auto options = std::make_shared<MergeOptions>();
-  command.add_option("DIR", options->folder, "folder with the shards")->required();
+  CLI::Option* folder = command.add_option("DIR", options->folder, "folder with the shards")->required();
+  command.files.add_inputs([options] {
+    return std::vector<NamedFile>{{"the shards", options->folder, {}, {"shard-*"}}};
+  });
+  folder->group("Inputs");
   offer_quiet(command, options->verbosity);
-  offer_output(command, options->output, "FILE", "rows, " + in_words(io::table_endings()));
-  command
-      .add_option("--summary", options->summary,
-                  "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script")
-      ->option_text("FILE");
+  options->files = &command.files;
+  CLI::Option* rows = offer_output(command, output_names, options->output, "rows, " + in_words(io::table_endings()),
+                                   io::table_endings());
+  declare_outputs(command, rows, [options] {
+    if (options->output.empty()) return std::vector<NamedFile>{};
+    return std::vector<NamedFile>{{"the manifest of -o", io::manifest_path(options->output)}};
+  });
+  offer_output(command, "--summary", options->summary,
+               "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script",
+               summary_endings());
   offer_input_file(command, "--script", options->script, "the shards' script, for the summary");
   command.add_option("--set", options->overrides, "as for the shards")
       ->option_text("KEY=VALUE")

@@ -22,8 +22,15 @@ std::string take_standard_input(std::string& file) {
   return {};
 }
 
-}  // namespace
+/// As it is mostly typed: "-o".
+std::string told_name(const CLI::Option& option) {
+  if (option.get_positional()) return "the input";
+  return option.get_snames().empty() ? option.get_name() : '-' + option.get_snames().front();
+}
 
+Files& files_of(CLI::App& command) { return dynamic_cast<Command&>(command).files; }
+
+/// Throws Error(usage) if two inputs are standard input.
 void require_one_standard_input(const CLI::App& command) {
   const CLI::Option* first = nullptr;
   for (const CLI::Option* option : command.get_options(nullptr)) {
@@ -34,8 +41,6 @@ void require_one_standard_input(const CLI::App& command) {
     first = option;
   }
 }
-
-namespace {
 
 void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
   if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
@@ -153,12 +158,58 @@ CLI::Option* as_input(CLI::Option* option) {
       ->transform(CLI::Validator(take_standard_input, ""));
 }
 
+CLI::Option* declare_inputs(CLI::App& command, CLI::Option* option, const std::vector<std::filesystem::path>& files,
+                            const std::vector<std::string>& contents) {
+  files_of(command).add_inputs([option, &files, contents] {
+    std::vector<NamedFile> inputs;
+    std::error_code unknown;
+    for (const std::filesystem::path& file : files) {
+      const bool is_folder = std::filesystem::is_directory(file, unknown);
+      inputs.push_back({told_name(*option), file, {}, is_folder ? contents : std::vector<std::string>{}});
+    }
+    return inputs;
+  });
+  return option->group("Inputs");
+}
+
 CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
                               const std::string& what) {
-  return as_input(command.add_option(name, file, what))->option_text("FILE");
+  CLI::Option* option = as_input(command.add_option(name, file, what));
+  files_of(command).add_inputs([option, &file] { return std::vector<NamedFile>{{told_name(*option), file}}; });
+  return (option->get_positional() ? option : option->option_text("FILE"))->group("Inputs");
+}
+
+CLI::Option* declare_outputs(CLI::App& command, CLI::Option* option, const Files::List& outputs) {
+  files_of(command).add_outputs(outputs);
+  return option->group("Outputs");
+}
+
+CLI::Option* offer_output(CLI::App& command, const std::string& names, std::filesystem::path& file,
+                          const std::string& what, const std::vector<std::string>& endings) {
+  CLI::Option* option = command.add_option(names, file, what)->option_text("FILE");
+  return declare_outputs(command, option, [option, &file, endings] {
+    return std::vector<NamedFile>{{told_name(*option), file, endings}};
+  });
+}
+
+CLI::Option* offer_output_folder(CLI::App& command, const std::string& names, std::filesystem::path& folder,
+                                 const std::string& what, const std::vector<std::string>& contents) {
+  CLI::Option* option = command.add_option(names, folder, what)->option_text("DIR");
+  return declare_outputs(command, option, [option, &folder, contents] {
+    return std::vector<NamedFile>{{told_name(*option), folder, {}, contents}};
+  });
+}
+
+void offer_sensors(CLI::App& command, Inputs& inputs) {
+  inputs.files = &files_of(command);
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false)
+      ->group("Inputs");  // which of their files are read is told once they are
 }
 
 void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what) {
+  offer_sensors(command, inputs);
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -174,9 +225,6 @@ void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what) {
           [&inputs](const std::string& word) { inputs.overrides.push_back("sensing.response=" + response(word)); },
           "how all sensors answer: zones or analog (default: as the " + what + " says, or else the sensor)")
       ->option_text("WORD");
-  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
   offer_quiet(command, inputs.verbosity);
 }
 
@@ -255,25 +303,27 @@ void offer_run_choice(CLI::App& command, RunChoice& choice) {
   command.add_option("--replicate", choice.replicate, "which replicate (default: 1)")->option_text("N");
 }
 
-void offer_output(CLI::App& command, std::filesystem::path& output, const std::string& text, const std::string& what) {
-  command.add_option("-o,--output", output, what)->option_text(text);
-}
-
 void offer_map_report(CLI::App& command, std::filesystem::path& report) {
-  command.add_option("--report", report, "the maps as one self-contained page, .html")->option_text("FILE");
+  offer_output(command, "--report", report, "the maps as one self-contained page, .html", {".html"});
 }
 
-CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& what, const std::string& examples) {
-  CLI::App& command = *parent.add_subcommand(name, what);
-  command.footer("Examples:" + examples);
-  return command;
+void Command::pre_callback() {
+  if (!get_subcommands().empty()) return;
+  require_one_standard_input(*this);
+  files.check();
+}
+
+Command& add_command(CLI::App& parent, const std::string& name, const std::string& what, const std::string& examples) {
+  const auto command = std::make_shared<Command>(name, what, parent);
+  parent.add_subcommand(command);
+  command->footer("Examples:" + examples);
+  return *command;
 }
 
 void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,
              Needs needs) {
   command.callback([&command, inputs = std::move(inputs), work = std::move(work), needs] {
     if (!command.get_subcommands().empty()) return;
-    require_one_standard_input(command);
     require_inputs(command, *inputs, needs);
     work(*inputs);
   });

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "app/files.hpp"
+
 namespace pirsim::app {
 
 enum class Verbosity { quiet, normal, verbose };
@@ -24,6 +26,7 @@ struct Inputs {
   std::vector<std::filesystem::path> sensor_directories;
   std::string tracer = "auto";
   Verbosity verbosity = Verbosity::normal;
+  const Files* files = nullptr;  ///< of the command that offers this
 };
 
 /// One run of a study.
@@ -32,13 +35,40 @@ struct RunChoice {
   int replicate = 1;
 };
 
+/// pirsim itself, or a subcommand. Before its work it refuses outputs that can't be written or are inputs, and two
+/// inputs that are standard input, which is read once.
+class Command : public CLI::App {
+ public:
+  using CLI::App::App;
+  Command(const std::string& name, const std::string& what, CLI::App& parent) : CLI::App(what, name, &parent) {}
+  Files files;
+
+ private:
+  void pre_callback() override;
+};
+
+// Options that name files and folders. Each is declared to be read or to be written, which its group in the help tells.
+
 /// Lets the option's file be standard input, by "-"; one of a command's files at most.
 CLI::Option* as_input(CLI::Option* option);
-/// Throws Error(usage) if two inputs are standard input, which is read once. For commands without on_call().
-void require_one_standard_input(const CLI::App& command);
-/// An option for a file that may be standard input.
+/// An option whose files are read; contents: of folders among them, as NamedFile has it.
+CLI::Option* declare_inputs(CLI::App& command, CLI::Option* option, const std::vector<std::filesystem::path>& files,
+                            const std::vector<std::string>& contents = {});
+/// An option for a file that is read, and may be standard input.
 CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
                               const std::string& what);
+constexpr const char* output_names = "-o,--output";
+/// endings: those that its name may have; none: any.
+CLI::Option* offer_output(CLI::App& command, const std::string& names, std::filesystem::path& file,
+                          const std::string& what, const std::vector<std::string>& endings = {});
+/// contents: what is written into it, as NamedFile has it.
+CLI::Option* offer_output_folder(CLI::App& command, const std::string& names, std::filesystem::path& folder,
+                                 const std::string& what, const std::vector<std::string>& contents);
+/// Where other options say what an output is, or where files lie beside it.
+CLI::Option* declare_outputs(CLI::App& command, CLI::Option* option, const Files::List& outputs);
+
+/// --sensors.
+void offer_sensors(CLI::App& command, Inputs& inputs);
 /// --set, --response, --sensors and --quiet. `what` is changed: a script or a recipe.
 void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what);
 /// --scene, --marks and the options of offer_changes(): for commands that make the script themselves.
@@ -58,13 +88,11 @@ void offer_quiet(CLI::App& command, Verbosity& verbosity);
 void offer_verbose(CLI::App& command, Verbosity& verbosity);
 void offer_threads(CLI::App& command, unsigned& threads);
 void offer_run_choice(CLI::App& command, RunChoice& choice);
-/// `text`: FILE or DIR.
-void offer_output(CLI::App& command, std::filesystem::path& output, const std::string& text, const std::string& what);
 void offer_map_report(CLI::App& command, std::filesystem::path& report);
 
 /// A subcommand. `examples` are whole lines, and stand at the end of its help.
-[[nodiscard]] CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& what,
-                                    const std::string& examples);
+[[nodiscard]] Command& add_command(CLI::App& parent, const std::string& name, const std::string& what,
+                                   const std::string& examples);
 enum class Needs { scene, scene_and_script };
 /// Does the work if the command itself is called, not one of its subcommands. It refuses to without what it needs.
 void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,

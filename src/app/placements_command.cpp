@@ -51,12 +51,10 @@ std::vector<std::filesystem::path> draw_maps(const studies::PlacementViews& view
 }
 
 void placements(const Inputs& inputs, const PlacementsOptions& options) {
-  check_outputs({{"-o", options.scene, {".gltf", ".glb"}}, {"--report", options.report, {".html"}}}, inputs);
   const PlacementSpec spec =
       io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
   const SceneSpec scene = read_scene(inputs);
-  keep_inputs({{"-o", options.scene}, {"--report", options.report}},
-              files_read(spec.light ? spec.light->people : ScriptSpec{}, scene));
+  if (spec.light) keep_inputs(inputs, files_read(spec.light->people, scene));
   tell(scene.warnings, inputs.verbosity);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
@@ -92,10 +90,12 @@ void add_placements_command(CLI::App& app) {
   const auto options = std::make_shared<PlacementsOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->scene, "FILE", "the scene with the best set's sensors, .gltf or .glb");
+  offer_output(command, output_names, options->scene, "the scene with the best set's sensors, .gltf or .glb",
+               {".gltf", ".glb"});
   offer_map_report(command, options->report);
-  command.add_option("--maps", options->maps, "folder for before.png and after.png: the scene's own set, the best one")
-      ->option_text("DIR");
+  offer_output_folder(command, "--maps", options->maps,
+                      "folder for before.png and after.png: the scene's own set, the best one",
+                      {"before.png", "after.png"});
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { placements(given, *options); });
 }

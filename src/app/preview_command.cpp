@@ -32,9 +32,7 @@ void refuse_words(const std::filesystem::path& marks) {
 
 void preview(const Inputs& inputs, const PreviewOptions& options) {
   refuse_words(inputs.marks);
-  check_outputs({{"-o", options.output, {".png"}}}, inputs);
   const Model model = load(inputs);
-  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   PictureRequest request = options.picture;
   request.run = find_run(model, options.run);
   const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
@@ -81,7 +79,7 @@ void add_preview_command(CLI::App& app) {
   offer_study(command, *inputs);
   offer_tracer(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "FILE", "PNG file (default: preview.png)");
+  offer_output(command, output_names, options->output, "PNG file (default: preview.png)", {".png"});
   offer_run_choice(command, options->run);
   offer_moment(command, "--time", options->time, "which moment", "10 s into desk work");
   command

@@ -22,8 +22,8 @@ namespace {
 
 /// What a reconciliation, its plan and its self-test share.
 struct AnalysisOptions {
-  std::filesystem::path table;  ///< folder of the reference table; empty: in the output folder
-  std::string nuisance;         ///< file, "none", or empty: the usual
+  std::filesystem::path table;     ///< folder of the reference table; empty: in the output folder
+  std::filesystem::path nuisance;  ///< file, "none", or empty: the usual
   double alpha = 0.05;
   std::vector<std::string> effects;  ///< candidates; empty: the whole catalogue
   double budget = 1.0;               ///< times the usual number of simulated datasets
@@ -171,11 +171,6 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   tell(scene.warnings, inputs.verbosity);
   tell(given.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, given.sensing), inputs.verbosity);
-  std::vector<std::string> read = files_read(given, scene);
-  read.insert(read.end(), {options.measured.string(), options.map.string(), analysis.nuisance});
-  std::vector<NamedOutput> written;
-  for (const char* name : reconcile::report_files) written.push_back({"-o", options.output / name});
-  keep_inputs(written, read);
   const reconcile::Measured measured = reconcile::read_measured(options.measured, scene, given, map_of(options));
   const ScriptSpec script = reconcile::with_holds(scene, given, measured);
   const reconcile::StudyFrame frame = reconcile::frame_of(scene, script);
@@ -201,10 +196,9 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {
-  command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
-      ->option_text("DIR");
-  as_input(command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none"))
-      ->option_text("FILE");
+  offer_output_folder(command, "--table", options.table, "folder that keeps the reference table (default: DIR/table)",
+                      {"table.journal", "realizations_*", "injected"});
+  offer_input_file(command, "--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none");
   command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
       ->option_text("P")
       ->check(CLI::Range(0.001, 0.5));
@@ -238,8 +232,9 @@ void add_selftest_command(CLI::App& reconcile_command) {
   const auto options = std::make_shared<SelftestOptions>();
   offer_study(command, *inputs);
   using reconcile::LeaveOut;
-  command.add_option("-o,--out", options->output, "folder for rates and pictures (default: reconcile_selftest)")
-      ->option_text("DIR");
+  offer_output_folder(command, "-o,--out", options->output,
+                      "folder for rates and pictures (default: reconcile_selftest)",
+                      {"selftest.csv", "selftest.md", "selftest.html", "targets.md", "table"});
   offer_kind(command, options->kind, "what faults are injected into");
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
@@ -280,8 +275,8 @@ void add_plan_command(CLI::App& reconcile_command) {
   const auto analysis = std::make_shared<AnalysisOptions>();
   const auto options = std::make_shared<PlanOptions>();
   offer_study(command, *inputs);
-  command.add_option("-o,--out", options->output, "folder for page and tables (default: reconcile_plan)")
-      ->option_text("DIR");
+  offer_output_folder(command, "-o,--out", options->output, "folder for page and tables (default: reconcile_plan)",
+                      {"plan.csv", "plan.html", "plan.json", "table"});
   offer_kind(command, options->kind, "what is to be measured");
   command.add_option("--runs", options->runs, "planned runs of every trial (default: 1)")
       ->option_text("N")
@@ -306,8 +301,8 @@ void add_reconcile_command(CLI::App& app) {
   offer_input_file(command, "--measured", options->measured, "rows, sums or a log from the real room");
   offer_input_file(command, "--map", options->map, "what a log's columns mean (pirsim log --print-map)");
   command.add_option("--time-zone", options->time_zone, "where a log's room is, as Europe/Berlin")->option_text("ZONE");
-  command.add_option("-o,--out", options->output, "folder for report and patched script (default: reconcile)")
-      ->option_text("DIR");
+  offer_output_folder(command, "-o,--out", options->output, "folder for report and patched script (default: reconcile)",
+                      {reconcile::report_files.begin(), reconcile::report_files.end()});
   command
       .add_option("--holdout", options->holdout,
                   "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "

@@ -33,7 +33,7 @@ void offer_run(CLI::App& command) {
       "--print-config", [action] { *action = Action::print_config; }, "print the resolved script and stop");
   on_call(command, inputs, [options, action](const Inputs& given) {
     if (*action == Action::print_config) return print_config(given);
-    check_options(given, *options);
+    check_options(*options);
     run(load(given), given, *options);
   });
 }

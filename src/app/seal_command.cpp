@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 struct SealOptions {
   fs::path output = "challenge";  ///< folder of what may be published
   fs::path answer;                ///< what must be kept secret
-  std::string nuisance;           ///< file, "none", or empty: the usual
+  fs::path nuisance;              ///< file, "none", or empty: the usual
   reconcile::Hidden hidden = reconcile::Hidden::any;
   int runs = 1;
   std::optional<std::uint64_t> secret_seed;
@@ -121,11 +121,10 @@ void add_seal_command(CLI::App& reconcile_command) {
   const auto options = std::make_shared<SealOptions>();
   offer_study(command, *inputs);
   using reconcile::Hidden;
-  command.add_option("-o,--out", options->output, "folder for data and hash (default: challenge)")->option_text("DIR");
-  command.add_option("--answer", options->answer, "where the sealed answer goes, JSON; keep it secret")
-      ->option_text("FILE");
-  as_input(command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none"))
-      ->option_text("FILE");
+  offer_output_folder(command, "-o,--out", options->output, "folder for data and hash (default: challenge)",
+                      {"measured.csv", "commitment.sha256"});
+  offer_output(command, "--answer", options->answer, "where the sealed answer goes, JSON; keep it secret");
+  offer_input_file(command, "--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none");
   command.add_option("--hide", options->hidden, "any, nothing, one, two or out-of-catalogue (default: any)")
       ->option_text("KIND")
       ->transform(one_of<Hidden>({{"any", Hidden::any},
@@ -150,10 +149,7 @@ void add_open_command(CLI::App& reconcile_command) {
   offer_input_file(command, "--answer", options->answer, "the sealed answer")->required();
   offer_input_file(command, "--commitment", options->commitment, "the published hash")->required();
   offer_input_file(command, "--report", options->report, "report.json to be scored")->required();
-  command.callback([options, &command] {
-    require_one_standard_input(command);
-    open_challenge(*options);
-  });
+  command.callback([options] { open_challenge(*options); });
 }
 
 }  // namespace pirsim::app

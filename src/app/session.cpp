@@ -4,8 +4,6 @@
 #include <unistd.h>
 #include <algorithm>
 #include <iostream>
-#include <map>
-#include <set>
 
 #include "app/long_work.hpp"
 #include "core/text.hpp"
@@ -35,7 +33,7 @@ TracerKind tracer_kind(const std::string& name) {
 
 }  // namespace
 
-NuisanceSpec nuisance_of(const std::string& asked) {
+NuisanceSpec nuisance_of(const std::filesystem::path& asked) {
   if (asked == "none") return {0.0, 0.0, 0.0, 0.0, 0.0};
   return asked.empty() ? NuisanceSpec{} : io::read_nuisance(asked);
 }
@@ -78,11 +76,16 @@ std::filesystem::path found(io::DataKind kind, const std::filesystem::path& file
 
 SceneSpec read_scene(const Inputs& inputs) {
   const std::filesystem::path file = found(io::DataKind::rooms, inputs.scene);
-  return io::read_scene(file, scene_options(inputs));
+  SceneSpec scene = io::read_scene(file, scene_options(inputs));
+  keep_inputs(inputs, files_read({}, scene));
+  return scene;
 }
 
 ScriptSpec read_script(const Inputs& inputs) {
-  return io::read_script(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
+  ScriptSpec script =
+      io::read_script(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
+  keep_inputs(inputs, files_read(script, {}));
+  return script;
 }
 
 namespace {
@@ -91,6 +94,7 @@ Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   const TracerKind tracer = tracer_kind(inputs.tracer);
   const Progress progress({.what = "reading and compiling " + inputs.scene.filename().string()}, of_progress);
   SceneSpec scene = read_scene(inputs);
+  keep_inputs(inputs, files_read(script, scene));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   Model model = compile(std::move(scene), std::move(script), {tracer});
@@ -135,83 +139,13 @@ std::uint32_t find_run(const Model& model, const RunChoice& choice) {
               "--trial: '" + choice.trial + "' is not in the script" + near_or_all(choice.trial, names));
 }
 
-namespace {
-
-namespace fs = std::filesystem;
-
-void check_ending(const NamedOutput& output) {
-  const std::string name = output.file.filename().string();
-  const auto fits = [&](const std::string& ending) { return name.size() > ending.size() && name.ends_with(ending); };
-  if (std::any_of(output.endings.begin(), output.endings.end(), fits) || io::is_written_directly(output.file)) return;
-  throw Error(ErrorCode::usage,
-              output.option + ": '" + output.file.string() + "' must end in " + in_words(output.endings));
-}
-
-/// "rows.csv" in a folder that isn't there: its journal or partial file would be the first to be missed.
-void check_folder(const NamedOutput& output) {
-  const fs::path folder = output.file.parent_path();
-  std::error_code unknown;
-  const fs::file_status status = fs::status(folder, unknown);
-  if (folder.empty() || fs::is_directory(status) || status.type() == fs::file_type::none) return;
-  const std::string name = "'" + folder.string() + "'";
-  throw Error(ErrorCode::io, Where{output.file.string()},
-              "can't write: " + (fs::exists(status) ? name + " isn't a folder" : "there is no folder " + name));
-}
-
-/// A text that all names of one file share, as far as it can be told.
-std::string identity(const fs::path& file) {
-  std::error_code fault;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(file, fault), fault);
-  return fault ? file.lexically_normal().string() : whole.string();
-}
-
-}  // namespace
-
-std::string in_words(const std::vector<std::string>& endings) {
-  std::string text;
-  for (std::size_t i = 0; i < endings.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == endings.size() ? " or " : ", ") + endings[i];
-  }
-  return text;
-}
-
 const std::vector<std::string>& summary_endings() {
   static const std::vector<std::string> endings{".csv", ".md"};
   return endings;
 }
 
-void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs) {
-  std::map<std::string, std::string> taken;
-  // A shipped file isn't in the working folder, whatever its name.
-  const auto here = [](const fs::path& file) {
-    std::error_code unknown;
-    return fs::exists(file, unknown) ? file : fs::path();
-  };
-  for (const auto& [option, file] : {std::pair("--scene", here(inputs.scene)), std::pair("--marks", inputs.marks),
-                                     std::pair("--script", here(inputs.script))}) {
-    if (!file.empty()) taken.emplace(identity(file), option);
-  }
-  for (const NamedOutput& output : outputs) {
-    if (output.file.empty()) continue;
-    check_ending(output);
-    check_folder(output);
-    if (output.file == "/dev/null") continue;
-    const auto [first, is_new] = taken.emplace(identity(output.file), output.option);
-    if (is_new) continue;
-    throw Error(ErrorCode::usage,
-                first->second + " and " + output.option + " are one file: '" + output.file.string() + "'");
-  }
-}
-
-void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std::string>& read) {
-  std::set<std::string> inputs;
-  for (const std::string& file : read) inputs.insert(identity(file));
-  for (const NamedOutput& output : outputs) {
-    if (output.file.empty() || !inputs.contains(identity(output.file)) || io::is_written_directly(output.file))
-      continue;
-    throw Error(ErrorCode::usage,
-                output.option + ": '" + output.file.string() + "' is read as an input; it would be overwritten");
-  }
+void keep_inputs(const Inputs& inputs, const std::vector<std::filesystem::path>& read) {
+  if (inputs.files != nullptr) inputs.files->keep(read);
 }
 
 namespace {
@@ -225,24 +159,19 @@ io::NamedFile reference_of(const ScriptSpec& script) {
 
 }  // namespace
 
-std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene) {
-  std::vector<std::string> files;
+std::vector<std::filesystem::path> files_read(const ScriptSpec& script, const SceneSpec& scene) {
+  std::vector<std::filesystem::path> files;
   for (const std::vector<InputFile>* read : {&script.files, &scene.files}) {
-    for (const InputFile& file : *read) files.push_back(file.path);
+    for (const InputFile& file : *read) files.emplace_back(file.path);
   }
   const io::NamedFile reference = reference_of(script);
-  if (!reference.path.empty()) files.push_back(reference.path.string());
+  if (!reference.path.empty()) files.push_back(reference.path);
   return files;
 }
 
-bool is_below(const fs::path& file, const fs::path& folder) {
-  const fs::path inner = identity(file), outer = fs::path(identity(folder / "any")).parent_path();
-  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
-}
-
-void make_folder(const fs::path& folder) {
+void make_folder(const std::filesystem::path& folder) {
   std::error_code fault;
-  fs::create_directories(folder, fault);
+  std::filesystem::create_directories(folder, fault);
   if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't make the folder: " + fault.message());
 }
 

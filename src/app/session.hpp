@@ -35,36 +35,23 @@ namespace pirsim::app {
 [[nodiscard]] std::vector<std::filesystem::path> data_directories();
 /// The file, or else the shipped one of that name. Throws Error(io), with the nearest name, if there is neither.
 [[nodiscard]] std::filesystem::path found(io::DataKind kind, const std::filesystem::path& file);
-/// Of --scene and --script, which may name shipped files. Throw as io::read_scene() and io::read_script().
+/// Of --scene and --script, which may name shipped files. Throw as io::read_scene() and io::read_script(), and
+/// Error(usage) for an output in the place of what was read.
 [[nodiscard]] SceneSpec read_scene(const Inputs& inputs);
 [[nodiscard]] ScriptSpec read_script(const Inputs& inputs);
 /// Of --nuisance: a file, "none", or "" for the usual one.
-[[nodiscard]] NuisanceSpec nuisance_of(const std::string& asked);
+[[nodiscard]] NuisanceSpec nuisance_of(const std::filesystem::path& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 /// Of the room, by the study's `without`: who takes a shipped study for a room of their own may not expect it.
 void tell_what_is_left_out(const studies::CoverageStudy& study, Verbosity verbosity);
 
-struct NamedOutput {
-  std::string option;          ///< "--summary"
-  std::filesystem::path file;  ///< empty: not asked for
-  std::vector<std::string> endings = {};
-};
-
-/// ".csv, .csv.gz or .csv.zst"
-[[nodiscard]] std::string in_words(const std::vector<std::string>& endings);
 /// How the name of a summary may end; write_summary() goes by it.
 [[nodiscard]] const std::vector<std::string>& summary_endings();
 
-/// Tells what is wrong with the names of output files before any work is done. Throws Error(usage) for an ending that
-/// isn't known (unless the file is there and no regular one, as /dev/stdout is), for one file with two outputs, and for
-/// an output that is an input; Error(io) for a folder that is missing.
-void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs);
-/// Throws Error(usage) for an output that is one of these files, which were read.
-void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std::string>& read);
+/// Throws Error(usage) for an output of the command in the place of one of these files, which reading has found.
+void keep_inputs(const Inputs& inputs, const std::vector<std::filesystem::path>& read);
 /// What a model was made from, and what its summary refers to.
-[[nodiscard]] std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene);
-/// Would the file lie in that folder, however deep, or be the folder itself?
-[[nodiscard]] bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
+[[nodiscard]] std::vector<std::filesystem::path> files_read(const ScriptSpec& script, const SceneSpec& scene);
 /// With all that it lies in. Throws Error(io).
 void make_folder(const std::filesystem::path& folder);
 

@@ -31,7 +31,7 @@ void add_status_command(CLI::App& app) {
   pirsim status out -q                                             only what is left
 )");
   const auto options = std::make_shared<StatusOptions>();
-  command.add_option("DIR", options->folder, "folder with the shards")->required();
+  command.add_option("DIR", options->folder, "folder with the shards")->required()->group("Inputs");
   offer_quiet(command, options->verbosity);
   command.callback([options] { status(*options); });
 }

@@ -10,6 +10,7 @@
 #include "app/session.hpp"
 #include "app/study_outputs.hpp"
 #include "core/text.hpp"
+#include "io/write/row_file.hpp"
 #include "pirsim/study.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
@@ -141,26 +142,20 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
 
 namespace {
 
-std::vector<NamedOutput> outputs_of(const RunOptions& options) {
-  const bool sharded = !options.rows.shard.empty();  // -o and --occupants are folders then
-  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output,
-                              occupants = sharded ? std::filesystem::path{} : options.occupants;
-  std::vector<NamedOutput> outputs{{"-o", rows, io::table_endings()},
-                                   {"--summary", options.summary, summary_endings()},
-                                   {"--zones", options.zones, io::table_endings()},
-                                   {"--trace", options.trace, io::table_endings()},
-                                   {"--occupants", occupants, io::table_endings()},
-                                   {"--casas", options.casas, {".txt", ".txt.gz", ".txt.zst"}},
-                                   {"--report", options.report, {".html"}}};
-  if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
-  if (!occupants.empty()) outputs.push_back({"the manifest of --occupants", io::manifest_path(occupants), {".json"}});
+/// Of a table that can be resumed: with what lies beside it, or of a shard its folder.
+std::vector<NamedFile> outputs_of(const std::string& option, const std::filesystem::path& output,
+                                  const RowOptions& rows) {
+  if (!rows.shard.empty()) return {{option, output, {}, {"shard-*"}}};
+  std::vector<NamedFile> outputs{{option, output, io::table_endings()}};
+  if (output.empty() || io::is_written_directly(output)) return outputs;
+  for (const std::filesystem::path& file : io::files_beside(output))
+    outputs.push_back({"what lies beside " + option, file});
   return outputs;
 }
 
 }  // namespace
 
-void check_options(const Inputs& inputs, const RunOptions& options) {
-  check_outputs(outputs_of(options), inputs);
+void check_options(const RunOptions& options) {
   const bool sharded = !options.rows.shard.empty();
   const char* partial = sharded                                           ? "--shard"
                         : options.rows.start == RowOptions::Start::resume ? "--resume"
@@ -187,8 +182,6 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                         "' is not a regular file, so its rows can't be resumed");
     }
   }
-  if (sharded && !options.occupants.empty() && io::resolved(options.occupants) == io::resolved(options.rows.output))
-    throw Error(ErrorCode::usage, "--shard: -o and --occupants are one folder, but their files have the same names");
   if (has_whole_study_outputs(options)) {
     throw Error(ErrorCode::usage,
                 std::string(partial) +
@@ -197,7 +190,6 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
 }
 
 void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
-  keep_inputs(outputs_of(options), files_read(model.script(), model.scene()));
   if (inputs.verbosity != Verbosity::quiet) {
     const Progress looking({.what = "looking at what sensors see"}, inputs.verbosity);
     tell(studies::warnings(studies::look_around(model), model.scene()), inputs.verbosity);
@@ -255,33 +247,35 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
   const std::string tables = in_words(io::table_endings());
-  offer_output(command, options->rows.output, "FILE",
-               "rows, " + tables + " (default, or -: as CSV on standard output)");
-  command.get_option("--output")
-      ->transform(CLI::Validator(
-          [](std::string& file) {
-            if (file == "-") file.clear();
-            return std::string();
-          },
-          ""));
-  command
-      .add_option("--summary", options->summary, "table of sums per trial and sensor, " + in_words(summary_endings()))
-      ->option_text("FILE");
-  command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
-      ->option_text("FILE");
-  command.add_option("--zones", options->zones, "every zone's activity at every tick, " + tables)->option_text("FILE");
-  command
-      .add_option("--trace", options->trace,
-                  "analog sensors' power, signal and what is behind it at every tick, " + tables)
-      ->option_text("FILE");
-  command
-      .add_option("--occupants", options->occupants,
-                  "where everybody is and what they do, a row a window and person, " + tables + "; of a shard a folder")
-      ->option_text("FILE");
-  command
-      .add_option("--casas", options->casas,
-                  "a log of sensors and what people do, as CASAS' homes have it, .txt, .txt.gz or .txt.zst")
-      ->option_text("FILE");
+  CLI::Option* rows = command
+                          .add_option(output_names, options->rows.output,
+                                      "rows, " + tables + " (default, or -: as CSV on standard output)")
+                          ->option_text("FILE")
+                          ->transform(CLI::Validator(
+                              [](std::string& file) {
+                                if (file == "-") file.clear();
+                                return std::string();
+                              },
+                              ""));
+  declare_outputs(command, rows, [options] { return outputs_of("-o", options->rows.output, options->rows); });
+  offer_output(command, "--summary", options->summary,
+               "table of sums per trial and sensor, " + in_words(summary_endings()), summary_endings());
+  offer_output(command, "--report", options->report, "counts and time series as one self-contained page, .html",
+               {".html"});
+  offer_output(command, "--zones", options->zones, "every zone's activity at every tick, " + tables,
+               io::table_endings());
+  offer_output(command, "--trace", options->trace,
+               "analog sensors' power, signal and what is behind it at every tick, " + tables, io::table_endings());
+  CLI::Option* occupants = command
+                               .add_option("--occupants", options->occupants,
+                                           "where everybody is and what they do, a row a window and person, " + tables +
+                                               "; of a shard a folder")
+                               ->option_text("FILE");
+  declare_outputs(command, occupants,
+                  [options] { return outputs_of("--occupants", options->occupants, options->rows); });
+  offer_output(command, "--casas", options->casas,
+               "a log of sensors and what people do, as CASAS' homes have it, .txt, .txt.gz or .txt.zst",
+               {".txt", ".txt.gz", ".txt.zst"});
   offer_threads(command, options->threads);
   CLI::Option* shard =
       command

@@ -35,8 +35,8 @@ struct RunOptions {
 
 /// Where rows and all else go, and how much of the study is run.
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options);
-/// Throws Error(usage) for options that don't go together or can't be written; before any work.
-void check_options(const Inputs& inputs, const RunOptions& options);
+/// Throws Error(usage) for options that don't go together; before any work.
+void check_options(const RunOptions& options);
 /// What rows don't say, as warnings. Throws Error(incomplete) if runs failed: the last thing to do.
 void tell(const io::RunNotes& notes, Verbosity verbosity);
 /// Runs what is asked for and writes it.

@@ -35,9 +35,7 @@ void require_usual(const PageRequest& request, const Model& model, Size size) {
 }
 
 void view(const Inputs& inputs, const ViewOptions& options) {
-  check_outputs({{"-o", options.output, {".html"}}}, inputs);
   const Model model = load(inputs);
-  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   PageRequest request;
   request.run = find_run(model, options.run);
   const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
@@ -88,7 +86,7 @@ void add_view_command(CLI::App& app) {
   offer_study(command, *inputs);
   offer_tracer(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "FILE", "page, .html (default: run.html)");
+  offer_output(command, output_names, options->output, "page, .html (default: run.html)", {".html"});
   offer_run_choice(command, options->run);
   offer_moment(command, "--from", options->from, "where the page begins",
                "the run's beginning; of runs over 1200 s the 1200 s with most motion");

@@ -30,12 +30,10 @@ void require_one_test(const Inputs& inputs, const WalkTestOptions& options) {
 
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   require_one_test(inputs, options);
-  check_outputs({{"-o", options.output, {".csv"}}, {"--report", options.report, {".html"}}}, inputs);
   WalkTestSpec spec = options.standard
                           ? io::read_walk_test(*options.standard, inputs.overrides)
                           : io::read_walk_test(found(io::DataKind::studies, inputs.script), inputs.overrides);
   SceneSpec scene = read_scene(inputs);
-  keep_inputs({{"-o", options.output}, {"--report", options.report}}, files_read({}, scene));
   tell(scene.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
@@ -78,7 +76,8 @@ void add_walktest_command(CLI::App& app) {
           "the test after a standard in place of a script's: nema-wd7")
       ->option_text("NAME");
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "FILE", "points with tries and verdicts, as CSV (default: walk_test.csv)");
+  offer_output(command, output_names, options->output,
+               "points with tries and verdicts, as CSV (default: walk_test.csv)", {".csv"});
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
   on_call(

@@ -30,6 +30,7 @@ class RowFiles {
  public:
   explicit RowFiles(std::span<const std::filesystem::path> paths);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
   /// Once. Where rows are missing in a run, rows of which nothing is known. begin: before the first row of each file.
   void each(const TakeRow& take, const std::function<void()>& begin);
   [[nodiscard]] std::int64_t n_missing() const noexcept { return n_missing_; }  ///< of those that were given

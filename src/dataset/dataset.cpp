@@ -64,8 +64,7 @@ void write(const RoomDay& made, const fs::path& folder) {
 
 /// What lies where a dataset's files would be written; empty: nothing. The recipe itself may.
 fs::path first_in_the_way(const RecipeSpec& recipe, const fs::path& folder) {
-  for (const char* name : {"README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv",
-                           "areas.csv", "doors.csv", "pictures", "rooms", "scripts", "rows", "occupants", "exports"}) {
+  for (const char* name : dataset_parts) {
     if (fs::exists(folder / name)) return folder / name;
   }
   const fs::path there = folder / "recipe.yaml";

@@ -307,7 +307,7 @@ class Days(unittest.TestCase):
             self.assertEqual(*((pathlib.Path(folder) / f"{name}.md").read_text() for name in ("merged", "whole")))
             shard = pathlib.Path(folder) / "shards/shard-0001-of-0002.csv"
             bytes_before = shard.read_bytes()
-            self.assertIn("is named as one of the shards", pirsim("merge", f"{folder}/shards", "-o", shard, code=2).stderr)
+            self.assertIn("is one of the files of the shards", pirsim("merge", f"{folder}/shards", "-o", shard, code=2).stderr)
             self.assertEqual(shard.read_bytes(), bytes_before)
             self.day("-o", f"{folder}/days.csv", "--max-time", "0.001s", "--threads", 1, code=75)
             self.day("-o", f"{folder}/days.csv", "--resume")

@@ -86,6 +86,7 @@ class Marks(Case):
         # Other marks are another study: nothing is resumed.
         marks.write_text(MARKS.replace("yaw_deg: 45", "yaw_deg: 40"))
         self.run_pirsim(*scene, "--marks", marks, "-o", "rows.csv", "--resume", code=3)
+        self.write("x.csv", MARKS)
         self.assertIn("--marks and -o are one file", self.run_pirsim(*scene, "--marks", "x.csv", "-o", "x.csv", code=2)[1])
 
     def test_a_recipe_has_scenes_with_marks(self):

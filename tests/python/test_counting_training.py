@@ -3,6 +3,7 @@
 import csv
 import gzip
 import json
+import os
 import re
 import subprocess
 import sys
@@ -162,6 +163,37 @@ def test_the_shell_trains_and_counts_as_python_does(dataset, tmp_path):
     assert "isn't a counter" in shell("estimate", tmp_path / "log.csv", "--log", tmp_path / "log.csv", "-o", "x", code=3)
     assert "sensors: no room has 7" in shell("train", dataset, "--sensors", "7", "-o", tmp_path / "none.json", code=2)
     assert not (tmp_path / "none.json").exists()
+
+
+def test_the_shell_writes_over_nothing_that_it_reads(dataset, tmp_path):
+    counting.train(dataset).save(tmp_path / "counter.json")
+    write_log(tmp_path / "log.csv")
+    (tmp_path / "map.yaml").write_text("pirsim_log: 1\n")
+    (tmp_path / "link.csv").symlink_to("log.csv")
+    (tmp_path / "hard.csv").hardlink_to(tmp_path / "log.csv")
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    for output in before:
+        told = shell("estimate", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "--map", tmp_path / "map.yaml",
+                     "-o", output, code=2)
+        assert f"and -o are one file: '{output}'" in told
+    assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
+    for table in (dataset / "datapackage.json", dataset / "rooms.csv", next(dataset.glob("rows/*/*"))):
+        content = table.read_bytes()
+        assert "DATASET and -o are one file" in shell("train", dataset, "-o", table, code=2)
+        assert table.read_bytes() == content
+    for place in (tmp_path, tmp_path / "none" / "counter.json"):
+        assert "can't write: " in shell("train", dataset, "-o", place, code=4)
+
+
+def test_a_file_stays_if_the_new_one_cannot_be_written_whole(dataset, tmp_path, monkeypatch):
+    file = tmp_path / "counts.csv"
+    file.write_text("before")
+    counter = counting.train(dataset)
+    counts = counter.estimate(np.zeros((4, counter.n_sensors)))
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(OSError):
+        counts.write_csv(file)
+    assert [(one.name, one.read_text()) for one in tmp_path.iterdir()] == [("counts.csv", "before")]
 
 
 POOL = """

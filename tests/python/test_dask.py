@@ -55,6 +55,56 @@ def test_a_study_has_the_bytes_of_one_process_though_a_worker_is_killed(client, 
     assert (tmp_path / "many.csv").read_bytes() == (tmp_path / "one.csv").read_bytes()
 
 
+def test_rows_of_another_study_are_refused_and_never_returned(client, program, room, study_a, tmp_path):
+    script, rows = tmp_path / "study.yaml", tmp_path / "rows.csv"
+    script.write_text(study_a.read_text())
+
+    def run(*arguments, shards=2):
+        pirsim.dask.run_study(client, room, script, rows, shards=shards, arguments=["--replicates", "1", *arguments],
+                              command=program)
+
+    run()
+    before = files_of(tmp_path)
+    for arguments in (["--set", "sensing.rays_per_zone=9"], ["--seed", "5"], ["--response", "analog"]):
+        with pytest.raises(pirsim.InputError, match="can't be resumed because its inputs differ"):
+            run(*arguments)
+    with pytest.raises(pirsim.UsageError, match="holds shards of 2"):
+        run(shards=3)
+    script.write_text(study_a.read_text() + "# edited\n")
+    with pytest.raises(pirsim.InputError, match="content of study.yaml"):
+        run()
+    script.write_text(study_a.read_text())
+    assert files_of(tmp_path) == before
+    # One shard of elsewhere among those of this study.
+    other = tmp_path / "rows.csv.shards" / "shard-0002-of-0002.csv.json"
+    other.write_text(other.read_text().replace("\"seed\": 2021", "\"seed\": 7"))
+    assert other.read_bytes() != before["rows.csv.shards/shard-0002-of-0002.csv.json"]
+    with pytest.raises(pirsim.InputError, match="isn't made from what"):
+        run()
+    with pytest.raises(pirsim.UsageError, match="are one file"):
+        pirsim.dask.run_study(client, room, script, script, shards=2, command=program)
+    assert script.read_text() == study_a.read_text()
+
+
+def test_a_folder_of_another_dataset_is_refused(client, program, data, tmp_path):
+    recipe = tmp_path / "recipe.yaml"
+    recipe.write_text((data / "recipes" / "tiny.yaml").read_text())
+
+    def run(folder):
+        pirsim.dask.run_dataset(client, recipe, tmp_path / folder, shards=2, sensors=[data / "sensors"], command=program)
+
+    run("made")
+    recipe.write_text(recipe.read_text().replace("seed: ", "seed: 9"))
+    (tmp_path / "users").mkdir()
+    (tmp_path / "users" / "README.md").write_text("mine")
+    before = files_of(tmp_path)
+    with pytest.raises(pirsim.InputError, match="holds another dataset"):
+        run("made")
+    with pytest.raises(pirsim.InputError, match="of no dataset"):
+        run("users")
+    assert files_of(tmp_path) == before
+
+
 def test_a_dataset_has_the_files_of_one_process(client, command, program, data, tmp_path):
     recipe = data / "recipes" / "tiny.yaml"
     command("dataset", recipe, "-o", tmp_path / "one", "--sensors", data / "sensors", "-q")

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import pathlib
 import sys
 import warnings
 
 from .. import errors
+from .._files import keep_inputs, require_place
 from . import load, train
 
 
@@ -32,7 +34,16 @@ def _options() -> argparse.ArgumentParser:
     return parser
 
 
+def _inputs(options: argparse.Namespace) -> list[tuple[str, str | pathlib.Path]]:
+    if options.command == "train":  # all of the dataset; a counter that somebody keeps there isn't of it
+        return [("DATASET", file) for file in pathlib.Path(options.dataset).rglob("*")
+                if file.suffix != ".json" or file.name == "datapackage.json"]
+    return [("COUNTER", options.counter), *(("--log", file) for file in options.log), ("--map", options.map or "")]
+
+
 def _work(options: argparse.Namespace) -> None:
+    keep_inputs([("-o", options.output)], _inputs(options))
+    require_place(options.output)
     if options.command == "train":
         train(options.dataset, options.step, options.model, sensors=options.sensors,
               threads=options.threads).save(options.output)

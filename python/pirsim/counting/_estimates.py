@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._files import write
 from .._study import PathOr
 from ._readings import Readings
 
@@ -62,8 +63,7 @@ class Estimates:
 
     def write_csv(self, file: PathOr) -> None:
         """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count."""
-        with open(file, "w", encoding="utf-8", newline="") as out:
-            out.write(_core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
+        write(file, _core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
 
 
 def estimates_of(readings: Readings, probabilities: Any, expected_error: tuple[float, float] | None) -> Estimates:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._files import write
 from .._study import PathOr
 from ..errors import ErrorCode, InputError, UsageError
 from ..specs import Diagnostic
@@ -108,11 +109,10 @@ class LogisticCounter(LearnedCounter):
     def save(self, file: PathOr) -> None:
         """As JSON that load() reads."""
         intercepts = [None if np.isinf(value) else value for value in self.intercepts.tolist()]
-        with open(file, "w", encoding="utf-8") as out:
-            json.dump({"pirsim_counter": 1, "model": self.model, "step_s": self.step_s, "prior": self.prior.tolist(),
-                       "middle": self.middle.tolist(), "scale": self.scale.tolist(),
-                       "coefficients": self.coefficients.tolist(), "intercepts": intercepts}, out)
-            out.write("\n")
+        keys = {"pirsim_counter": 1, "model": self.model, "step_s": self.step_s, "prior": self.prior.tolist(),
+                "middle": self.middle.tolist(), "scale": self.scale.tolist(),
+                "coefficients": self.coefficients.tolist(), "intercepts": intercepts}
+        write(file, json.dumps(keys) + "\n")
 
 
 class TreesCounter(LearnedCounter):

@@ -40,6 +40,8 @@ std::map<std::string, fs::path> files_of(const Kind& kind, std::span<const fs::p
   return files;
 }
 
+constexpr const char* dangling = "is a link to a file that isn't there";
+
 const Kind& of(DataKind kind) { return *std::ranges::find(kinds, kind, &Kind::kind); }
 
 }  // namespace
@@ -48,7 +50,12 @@ std::string_view folder_of(DataKind kind) { return of(kind).folder; }
 
 std::vector<fs::path> data_folders(std::span<const fs::path> data_directories) {
   std::vector<fs::path> folders;
-  if (const char* own = std::getenv("PIRSIM_DATA_DIR"); own != nullptr && *own != '\0') folders.emplace_back(own);
+  std::error_code fault;
+  if (const char* own = std::getenv("PIRSIM_DATA_DIR"); own != nullptr && *own != '\0') {
+    if (!fs::is_directory(own, fault))
+      throw Error(ErrorCode::io, Where{own}, "PIRSIM_DATA_DIR: there is no such folder");
+    folders.emplace_back(own);
+  }
   folders.insert(folders.end(), data_directories.begin(), data_directories.end());
   return folders;
 }
@@ -65,6 +72,7 @@ std::vector<ShippedFile> shipped_files(std::span<const fs::path> data_directorie
 fs::path find_file(const fs::path& file, DataKind kind, std::span<const fs::path> data_directories) {
   std::error_code fault;
   if (fs::exists(file, fault)) return file;
+  if (fs::is_symlink(file, fault)) throw Error(ErrorCode::io, Where{file.string()}, dangling);
   const auto files = files_of(of(kind), data_folders(data_directories));
   if (file.has_parent_path()) {
     const std::string bare = file.filename().string();
@@ -85,6 +93,8 @@ NamedFile find_beside(const fs::path& folder, const fs::path& file, DataKind kin
   std::error_code fault;
   const fs::path beside = folder / file;
   if (fs::exists(beside, fault) && !fs::is_directory(beside, fault)) return {beside, {}};
+  if (!fs::exists(beside, fault) && fs::is_symlink(beside, fault))
+    return {beside, "'" + beside.string() + "' " + dangling};
   const auto files = files_of(of(kind), data_folders(data_directories));
   const std::string bare = file.filename().string();
   const auto shipped = files.find(bare);

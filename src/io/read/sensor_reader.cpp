@@ -339,7 +339,9 @@ std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {
   for (const fs::path& folder : folders_) {
     std::error_code fault;
     const fs::path file = folder / (model + ".yaml");
-    if (const auto status = fs::status(file, fault); !fs::exists(status) || fs::is_directory(status)) continue;
+    const fs::file_status status = fs::status(file, fault);
+    const bool is_dangling = !fs::exists(status) && fs::is_symlink(file, fault);  // whose reader says so
+    if (fs::is_directory(status) || (!fs::exists(status) && !is_dangling)) continue;
     const Input input = read_input(file);
     const YamlNode root = YamlNode::load(input);
     FoundSensor found{read_model(root), input.file(), {}};

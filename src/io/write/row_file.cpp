@@ -21,6 +21,8 @@ constexpr std::size_t block = 1U << 18U;
 const std::string remedy = "; remove it, or run without --resume to replace it";
 
 fs::path with_ending(fs::path path, const char* ending) { return path += ending; }
+fs::path partial_of(const fs::path& file) { return with_ending(without_compression(file), ".partial"); }
+fs::path journal_of(const fs::path& file) { return with_ending(without_compression(file), ".journal"); }
 
 void rename_or_throw(const fs::path& from, const fs::path& to) {
   std::error_code fault;
@@ -258,8 +260,8 @@ struct RowFile::Work {
 RowFile::RowFile(fs::path file, Manifest made, const std::string& header, Start start)
     : work_(std::make_unique<Work>()) {
   work_->file = resolved(file);
-  work_->partial_path = with_ending(without_compression(work_->file), ".partial");
-  work_->journal_path = with_ending(without_compression(work_->file), ".journal");
+  work_->partial_path = partial_of(work_->file);
+  work_->journal_path = journal_of(work_->file);
   work_->made = std::move(made);
   if (start == Start::anew || !work_->is_finished()) work_->open(header, start);
 }
@@ -296,6 +298,11 @@ void RowFile::discard() noexcept {
   std::error_code ignored;
   fs::remove(work_->partial_path, ignored);
   fs::remove(work_->journal_path, ignored);
+}
+
+std::vector<fs::path> files_beside(const fs::path& file) {
+  const fs::path target = resolved(file);
+  return {manifest_path(target), partial_of(target), journal_of(target)};
 }
 
 void DataCheck::add(std::string_view bytes) {

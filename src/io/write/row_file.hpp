@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/digest.hpp"
 #include "io/write/manifest.hpp"
@@ -46,6 +47,9 @@ class RowFile {
   struct Work;
   std::unique_ptr<Work> work_;
 };
+
+/// What a RowFile writes beside the file: its manifest, and the two that are there while runs come in.
+[[nodiscard]] std::vector<std::filesystem::path> files_beside(const std::filesystem::path& file);
 
 /// Compares rows, which come in pieces with their header, with what a manifest says of them.
 class DataCheck {

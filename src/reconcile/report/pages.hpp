@@ -85,9 +85,9 @@ void write_selftest(const std::filesystem::path& folder, const SelftestResult& r
 
 // What a reconciliation leaves behind, as files; the formats are described in docs/formats/reconcile.md.
 
-/// What write_report() replaces or removes in its folder.
-inline constexpr std::array report_files{"where.csv", "candidates.csv", "script_patched.yaml", "report.html",
-                                         "report.json"};
+/// What write_report() and the reference table (table/, table_with_.../) write in its folder.
+inline constexpr std::array report_files{
+    "where.csv", "candidates.csv", "script_patched.yaml", "report.html", "report.json", "trail.log", "table*"};
 
 [[nodiscard]] std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
                                   const Context& context, const Provenance& provenance);
