@@ -34,6 +34,8 @@ struct RunChoice {
 
 /// Lets the option's file be standard input, by "-"; one of a command's files at most.
 CLI::Option* as_input(CLI::Option* option);
+/// An input as the user typed it: standard input is "-".
+[[nodiscard]] std::string typed(const std::filesystem::path& input);
 /// Throws Error(usage) if two inputs are standard input, which is read once. For commands without on_call().
 void require_one_standard_input(const CLI::App& command);
 /// An option for a file that may be standard input.
