@@ -23,7 +23,7 @@ nb::tuple sensor(const LogSensorFacts& facts) {
   return nb::make_tuple(to_python(facts.name), to_python(facts.motion_share()), facts.known_s, facts.unknown_s,
                         lengths(facts.pulses), lengths(facts.pauses), to_python(facts.motion_by_hour),
                         is_known ? nb::object(nb::int_(facts.false_triggers->n)) : nb::none(),
-                        is_known ? facts.false_triggers->hours : 0.0);
+                        is_known ? facts.false_triggers->hours : 0.0, to_python(facts.hold_s));
 }
 
 nb::list pairs(const LogFacts& facts) {
