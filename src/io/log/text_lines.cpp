@@ -30,7 +30,7 @@ std::string without_colours(std::string_view text) {
     const std::size_t at = std::min(text.find("\x1B["), text.size());
     plain += text.substr(0, at);
     text.remove_prefix(at);
-    text.remove_prefix(std::min(text.size(), text.empty() ? 0 : text.find('m')) + (text.empty() ? 0 : 1));
+    if (!text.empty()) text.remove_prefix(std::min(text.find('m'), text.size() - 1) + 1);
   }
   return plain;
 }
@@ -38,7 +38,8 @@ std::string without_colours(std::string_view text) {
 /// The time of day of "[08:37:08.123][D][...".
 std::optional<std::int64_t> esphome_time(std::string_view text) {
   const std::size_t end = text.find("][");
-  if (!text.starts_with('[') || end == std::string_view::npos || text.substr(end + 3, 2) != "][") return std::nullopt;
+  if (!text.starts_with('[') || end == std::string_view::npos || text.find("][", end + 3) != end + 3)
+    return std::nullopt;
   const auto stamp = parse_stamp(text.substr(1, end - 1), LogMap::Dates::found);
   return stamp && stamp->kind == Stamp::Kind::time_of_day ? std::optional(stamp->us) : std::nullopt;
 }
@@ -82,7 +83,7 @@ std::string state_of(const nlohmann::json& value) {
 
 std::optional<TextLines::Writer> TextLines::writer_of(std::span<const HeadLine> head) {
   for (const HeadLine& line : head) {
-    if (has(line.text, publishes) || has(line.text, "z2m:") || has(line.text, "Zigbee2MQTT:"))
+    if (has(line.text, publishes) || has(line.text, "\tz2m:") || has(line.text, "Zigbee2MQTT:"))
       return Writer::zigbee2mqtt;
     if (has(line.text, "] [openhab.") || has(line.text, "] [org.openhab.") || has(line.text, "StateChangedEvent"))
       return Writer::openhab;
@@ -149,7 +150,7 @@ TextLines::Changes TextLines::of_zigbee2mqtt(std::string_view text) {
   const std::string time(time_in(text.substr(0, text.find(publishes))));
   std::string_view payload = text.substr(text.find(with_payload) + with_payload.size());
   payload = payload.substr(0, payload.rfind('\''));
-  std::string device(topic->substr(std::min(topic->find('/'), topic->size() - 1) + 1));  // without the base topic
+  std::string device(topic->substr(topic->find('/') + 1));  // without the base topic; npos + 1 is 0
   const nlohmann::json message = nlohmann::json::parse(payload, nullptr, false);
   const std::size_t slash = device.rfind('/');
   const std::string last = slash == std::string::npos ? std::string() : device.substr(slash + 1);

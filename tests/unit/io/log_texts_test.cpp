@@ -125,6 +125,7 @@ TEST_CASE("ESPHome's log: old and new words, colours, and days that pass without
   CHECK(log.sensors.front().changes == expected);
   CHECK(log.n_other_lines == 4);
   CHECK(log.remarks.empty());
+  CHECK_THAT(fault_of("[08:00:00][\n[08:00:00]\x1B[\n"), contains("expected a table, got lines of a text"));
   const Log odd = read_log_text(text +
                                 "[23:00:00][D][binary_sensor:036]: 'Bob's PIR': New state is ON\n"
                                 "[22:30:00][D][binary_sensor:036]: 'Bob's PIR': New state is OFF\n");
