@@ -15,6 +15,7 @@ find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256 of data and inputs
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # Debian's package has no CMake file
+find_package(SQLite3 REQUIRED)  # Home Assistant's database
 find_package(Eigen3 REQUIRED)
 find_package(Boost REQUIRED CONFIG)  # headers of Boost.Math
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)

@@ -25,6 +25,6 @@ set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION}\n The command an
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpirsim-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libembree-dev, libglm-dev, libtinygltf-dev, libopenmesh-dev, libyaml-cpp-dev, \
-nlohmann-json3-dev, libnlopt-cxx-dev, zlib1g-dev, libzstd-dev, libssl-dev, libhowardhinnant-date-dev, pkg-config")
+nlohmann-json3-dev, libnlopt-cxx-dev, zlib1g-dev, libzstd-dev, libsqlite3-dev, libssl-dev, libhowardhinnant-date-dev, pkg-config")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${PROJECT_DESCRIPTION}\n Static libraries and headers for C++20 programs.")
 include(CPack)

@@ -62,6 +62,7 @@ THIRD_PARTY = {
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},
+    "sqlite3": {"io"},
     "OpenMesh": {"geom"},
     "date": {"io"},
     "Random123": {"core"},

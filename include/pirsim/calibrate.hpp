@@ -15,6 +15,7 @@
 #include "pirsim/dataset.hpp"
 #include "pirsim/interval.hpp"
 #include "pirsim/log.hpp"
+#include "pirsim/log_facts.hpp"
 
 namespace pirsim::calibrate {
 
@@ -96,6 +97,10 @@ class Pool {
 
 // From a recipe and a log to rooms and stretches.
 
+/// How long the sensors of a log hold motion, which the rooms' do too: seconds, none if the log doesn't tell. Rooms
+/// have one hold. Throws Error(input) if those that are told differ by more than a tenth, or another sensor has shorter
+/// pulses.
+[[nodiscard]] std::optional<double> common_hold(const LogFacts& facts);
 /// Overrides with which a recipe's dataset is a pool: a row a reading, and the hold that the log tells, if it does.
 [[nodiscard]] std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, double step_s,
                                                       std::optional<double> hold_s);

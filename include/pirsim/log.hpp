@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pirsim/error.hpp"
@@ -20,9 +21,10 @@ namespace pirsim {
 
 struct LogMap {
   enum class Form {
-    found,  ///< as the log looks
-    wide,   ///< a row a reading, a column a sensor
-    events  ///< a row a change of one sensor
+    found,     ///< as the log looks
+    wide,      ///< a row a reading, a column a sensor
+    events,    ///< a row a change of one sensor
+    intervals  ///< a row a stretch of motion of one sensor, from its begin to its end
   };
   enum class Rows {
     found,
@@ -35,6 +37,12 @@ struct LogMap {
     count,    ///< how many are there
     presence  ///< 1 if anybody is
   };
+  /// Of all sensors, or else of some, by their names in the scene or in the log.
+  struct Seconds {
+    std::optional<double> all;
+    std::vector<std::pair<std::string, double>> each;
+    bool operator==(const Seconds&) const = default;
+  };
   struct Sensor {
     std::string name;    ///< of the sensor in the scene
     std::string in_log;  ///< its column or entity
@@ -43,9 +51,10 @@ struct LogMap {
 
   Form form = Form::found;
   Rows rows = Rows::found;
-  std::vector<std::string> time;  ///< a column, or those of date and time; empty: found
-  std::string sensor_column;      ///< of events
-  std::string state_column;       ///< of events
+  std::vector<std::string> time;  ///< a column, or those of date and time; empty: found. Of intervals their begin
+  std::vector<std::string> end;   ///< of intervals, as `time`
+  std::string sensor_column;      ///< of events and intervals
+  std::string state_column;       ///< of events; intervals may have one
   /// IANA name: "Europe/Berlin". Stamps without an offset are local times there, others are told so. Empty: local times
   /// are taken as they are, and every day has 24 hours.
   std::string time_zone;
@@ -56,9 +65,10 @@ struct LogMap {
   People people_mean = People::count;
   std::optional<double> interval_s;     ///< between readings; none: found
   std::optional<double> longest_gap_s;  ///< what is longer isn't known. None: 1.5 intervals; of events: any is known
-  std::optional<double> hold_s;         ///< of events: how long motion lasts whose end isn't told
-  double shift_s = 0.0;                 ///< added to every time: the log's clock is so much late
-  std::string from, to;                 ///< local times, "2026-03-02T08:30"; empty: all
+  Seconds hold_s;                       ///< of events: how long motion lasts whose end isn't told
+  Seconds longest_motion_s;  ///< of events: motion of which nothing was told for longer is unknown from there
+  double shift_s = 0.0;      ///< added to every time: the log's clock is so much late
+  std::string from, to;      ///< local times, "2026-03-02T08:30"; empty: all
   bool operator==(const LogMap&) const = default;
 };
 
@@ -121,6 +131,8 @@ struct Log {
   std::int64_t begin_us = 0, end_us = 0;  ///< what it tells of: readings in (begin, end], or events in [begin, end)
   std::int64_t interval_us = 0;           ///< between readings; 0: events
   std::uint64_t n_rows = 0;               ///< that were read
+  std::string source;                     ///< "openHAB's log", "Home Assistant's database"; empty: a table
+  std::uint64_t n_other_lines = 0;        ///< of such a log: those that tell of something else
   std::vector<std::string> others;        ///< columns or entities that are no motion sensors
   std::uint64_t n_other_rows = 0;         ///< events of those
   std::vector<Issue> remarks;             ///< what is odd, a kind once
@@ -131,8 +143,8 @@ struct Log {
 
 namespace io {
 
-// Reading. A file may be a pipe, UTF-16, or compressed by gzip or Zstandard. It is read once, from begin to end, and
-// memory grows with the number of changes in it: 24 bytes each.
+// Reading. A file may be a pipe, UTF-16, or compressed by gzip or Zstandard; it may be Home Assistant's database, which
+// is only read. It is read once, from begin to end, and memory grows with the number of changes in it: 24 bytes each.
 
 struct LogObserver {
   std::function<void(std::uint64_t rows)> read;  ///< now and then: so many rows so far; may throw to end the reading

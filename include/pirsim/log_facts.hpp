@@ -39,6 +39,9 @@ struct LogSensorFacts {
   /// For which it holds motion, in tenths of a second: of events, where many pulses are as short as the shortest.
   std::optional<double> hold_s;
   LogLengths pauses;
+  /// How long the sensor holds motion, to a tenth of a second, if events tell it: of 20 pulses or more, three in ten
+  /// are as long as the shortest.
+  std::optional<double> hold_s;
   std::array<std::optional<double>, 24> motion_by_hour{};  ///< share of the known time, by local hour of the day
   std::optional<LogFalseTriggers> false_triggers;
   bool never_changes = false;

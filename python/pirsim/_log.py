@@ -24,7 +24,7 @@ class LogLengths(NamedTuple):
 
     n: int
     floor: float
-    """One in a hundred doesn't reach it. A sensor's hold, or its dead time, if `floor_share` is large."""
+    """One in a hundred doesn't reach it. Of pauses a sensor's dead time, if `floor_share` is large."""
     floor_share: float
     """Of all, from there to a tenth longer."""
     shortest: float
@@ -51,8 +51,8 @@ class LogSensor(NamedTuple):
     false_triggers: int | None
     """Motion that begins where there should be none (docs/formats/log.md); None if the log doesn't tell."""
     false_trigger_hours: float
-    hold_s: float | None = None
-    """For which it holds motion, if the log tells: of events, where many pulses are as short as the shortest."""
+    hold_s: float | None
+    """How long it holds motion, if events tell it; docs/formats/log.md."""
 
 
 class LogPair(NamedTuple):
@@ -146,8 +146,8 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
         arrays["utc"] = utc_us.view("datetime64[us]")
     for array in arrays.values():
         array.flags.writeable = False
-    facts = tuple(LogSensor(name, share, known, unknown, LogLengths(*pulses), LogLengths(*pauses), hours, n, n_hours, hold)
-                  for name, share, known, unknown, pulses, pauses, hours, n, n_hours, hold in found["facts"])
+    facts = tuple(LogSensor(name, share, known, unknown, LogLengths(*pulses), LogLengths(*pauses), *rest)
+                  for name, share, known, unknown, pulses, pauses, *rest in found["facts"])
     return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
                utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
                map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),

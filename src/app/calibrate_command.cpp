@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 
 #include "app/commands.hpp"
@@ -31,21 +30,6 @@ double step_of(const CalibrateOptions& options, const Log& log) {
                                       " s, so that nothing shorter can be told apart");
   }
   return step_s;
-}
-
-/// How long the sensors hold motion, if the log tells: the pulses of an event log are hardly ever shorter. In tenths of
-/// a second, since no log tells more.
-std::optional<double> hold_of(const Log& log) {
-  constexpr std::size_t fewest_pulses = 20;  // of a sensor; assumed
-  if (log.has_readings()) return std::nullopt;
-  double sum = 0.0, n = 0.0;
-  for (const LogSensorFacts& sensor : facts_of(log).sensors) {
-    if (sensor.pulses.n < fewest_pulses) continue;
-    sum += sensor.pulses.floor_s;
-    n += 1.0;
-  }
-  constexpr double per_s = 10.0;
-  return n > 0.0 ? std::optional(std::round(per_s * sum / n) / per_s) : std::nullopt;
 }
 
 void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
@@ -84,7 +68,7 @@ void run(const CalibrateOptions& options) {
   if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
   const Log log = read_log(options.log, options.pool->inputs.verbosity);
   const double step_s = step_of(options, log);
-  const std::optional<double> hold_s = options.hold_s ? options.hold_s : hold_of(log);
+  const std::optional<double> hold_s = options.hold_s ? options.hold_s : calibrate::common_hold(facts_of(log));
   if (hold_s && !options.hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
     std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms' (--hold)\n";
   const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
@@ -154,7 +138,10 @@ void add_calibrate_command(CLI::App& app) {
       "--finish", [pool = options->pool.get()] { pool->part = DatasetWork::Part::finish; },
       "only weigh the rooms that are there");
   offer_dataset_work(command, options->pool);
-  command.callback([options] { run(*options); });
+  command.callback([&command, options] {
+    require_one_standard_input(command);
+    run(*options);
+  });
 }
 
 }  // namespace pirsim::app

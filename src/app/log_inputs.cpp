@@ -6,7 +6,7 @@
 namespace pirsim::app {
 
 void offer_log(CLI::App& command, LogInputs& log) {
-  CLI::Option* files = command.add_option("--log", log.files, "the log; several files are parts of one")
+  CLI::Option* files = as_input(command.add_option("--log", log.files, "the log; several files are parts of one"))
                            ->option_text("FILE")
                            ->required();
   declare_inputs(command, files, log.files);
@@ -17,8 +17,8 @@ void offer_log(CLI::App& command, LogInputs& log) {
 
 std::vector<std::string> words_of(const LogInputs& log) {
   std::vector<std::string> words{"--log"};
-  for (const std::filesystem::path& file : log.files) words.push_back(file.string());
-  if (!log.map.empty()) words.insert(words.end(), {"--map", log.map.string()});
+  for (const std::filesystem::path& file : log.files) words.push_back(typed(file));
+  if (!log.map.empty()) words.insert(words.end(), {"--map", typed(log.map)});
   if (!log.time_zone.empty()) words.insert(words.end(), {"--time-zone", log.time_zone});
   return words;
 }

@@ -34,7 +34,9 @@ Files& files_of(CLI::App& command) { return dynamic_cast<Command&>(command).file
 void require_one_standard_input(const CLI::App& command) {
   const CLI::Option* first = nullptr;
   for (const CLI::Option* option : command.get_options(nullptr)) {
-    if (!is_input(*option) || option->count() == 0 || option->results().back() != io::standard_input) continue;
+    const auto n = is_input(*option) ? std::ranges::count(option->results(), io::standard_input) : 0;
+    if (n > 1) throw Error(ErrorCode::usage, option->get_name() + ": standard input can be read once");
+    if (n == 0) continue;
     if (first != nullptr) {
       throw Error(ErrorCode::usage, first->get_name() + " and " + option->get_name() + " can't both be standard input");
     }
@@ -239,8 +241,9 @@ void offer_study(CLI::App& command, Inputs& inputs) {
   offer_changes(command, inputs, "script");
 }
 
+std::string typed(const std::filesystem::path& input) { return input == io::standard_input ? "-" : input.string(); }
+
 std::vector<std::string> model_options(const Inputs& inputs) {
-  const auto typed = [](const std::filesystem::path& file) { return file == io::standard_input ? "-" : file.string(); };
   std::vector<std::string> words{"--scene", typed(inputs.scene)};
   if (!inputs.marks.empty()) words.insert(words.end(), {"--marks", typed(inputs.marks)});
   words.insert(words.end(), {"--script", typed(inputs.script)});

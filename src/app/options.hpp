@@ -51,6 +51,8 @@ class Command : public CLI::App {
 
 /// Lets the option's file be standard input, by "-"; one of a command's files at most.
 CLI::Option* as_input(CLI::Option* option);
+/// An input as the user typed it: standard input is "-".
+[[nodiscard]] std::string typed(const std::filesystem::path& input);
 /// An option whose files are read; contents: of folders among them, as NamedFile has it.
 CLI::Option* declare_inputs(CLI::App& command, CLI::Option* option, const std::vector<std::filesystem::path>& files,
                             const std::vector<std::string>& contents = {});

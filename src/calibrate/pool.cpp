@@ -102,6 +102,28 @@ counting::Stretch stretch_of(const dataset::RoomDayRows& rows, double step_s) {
 
 }  // namespace
 
+std::optional<double> common_hold(const LogFacts& facts) {
+  constexpr std::size_t fewest_pulses = 20;  // assumed
+  constexpr double alike = 1.1;              // assumed (1.05-1.2): clocks and radios make holds so different
+  std::vector<double> holds, shortest;
+  std::vector<std::string> words;
+  for (const LogSensorFacts& sensor : facts.sensors) {
+    if (sensor.pulses.n < fewest_pulses) continue;
+    if (sensor.hold_s) holds.push_back(*sensor.hold_s);
+    shortest.push_back(sensor.hold_s.value_or(sensor.pulses.floor_s));
+    words.push_back(sensor.name + (sensor.hold_s ? " holds motion for " : ", whose hold isn't told, has pulses of ") +
+                    shortest_number(shortest.back()) + " s");
+  }
+  if (holds.empty() || facts.interval_s > 0.0) return std::nullopt;
+  const auto [least, most] = std::ranges::minmax(holds);
+  if (most > alike * least || alike * std::ranges::min(shortest) < most) {
+    throw Error(ErrorCode::input, "the log's sensors don't hold motion equally long (" + joined(words, "; ") +
+                                      "), and those of the rooms do: say a hold for all (--hold SECONDS), or leave "
+                                      "sensors out by a map (--map, sensors)");
+  }
+  return least;
+}
+
 std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, double step_s,
                                         std::optional<double> hold_s) {
   std::vector<std::string> overrides{"sensing.window_s=" + io::csv_number(step_s), "exports=[]", "occupants=false"};

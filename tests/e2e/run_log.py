@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""`pirsim log`: forms through pipes and encodings, summer time against Python's zoneinfo, what is refused by name and
-line, and a year of ten sensors in little memory.
+"""`pirsim log`: forms through pipes and encodings, Home Assistant's database as Python's sqlite3 writes it, summer time
+against Python's zoneinfo, what is refused by name and line, and a year of ten sensors in little memory.
 
 Usage: run_log.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
@@ -13,6 +13,8 @@ import os
 import pathlib
 import random
 import re
+import shutil
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -64,6 +66,14 @@ class Inputs(Case):
         os.mkfifo(pipe)
         with subprocess.Popen(["sh", "-c", f"cat '{self.write('log', WIDE)}' > '{pipe}'"]):
             self.assertEqual(self.rows(pipe, "--window", 1), ROWS)
+        costs = self.folder / "costs.csv"
+        run("control", "--log", "-", "--delay", 1, "-q", "-o", costs, input=WIDE.encode())
+        through = costs.read_text()
+        run("control", "--log", self.write("log", WIDE), "--delay", 1, "-q", "-o", costs)
+        self.assertEqual(costs.read_text(), through)
+        self.assertIn("standard input can be read once", run("log", "-", "-", input=WIDE.encode(), code=2)[1])
+        self.assertIn("can't both be standard input", run("log", "-", "--map", "-", input=WIDE.encode(), code=2)[1])
+        self.assertIn("the log is empty", run("log", "-", input=b"", code=3)[1])
 
     def test_the_map_that_is_printed_reads_the_log_again(self):
         log = self.write("log.csv", WIDE.replace("time,A,B", '"when, exactly",S\\1,"S ""2"""'))
@@ -147,6 +157,11 @@ REFUSED = {
     "UTF-32": ("time,A\n".encode("utf-32"), "UTF-32 isn't read"),
     "a workbook": (b"PK\x03\x04abcdefghijkl", "a workbook or another archive"),
     "JSON": (b'[{"entity_id": "a"}]', "log:1:1: error: expected a table, got JSON"),
+    "JSON of lines": (b'{"occupancy":true}\n', "log:1:1: error: expected a table, got JSON"),
+    "another program's text": (b"[13:05:10] something moved\n", "log:1:1: error: expected a table, got lines of a text"),
+    "an openHAB log without a change": (b"2024-01-31 18:00:00.000 [INFO ] [openhab.event.ThingAddedEvent] - Thing 'a'\n",
+                                        "none of the lines of openHAB's log tells that a sensor changed"),
+    "an interval that ends before it begins": (b"start,end,sensor\n0,5,A\n9,7,A\n", "log:3:3: error: it ends at '7', before it begins at '9'"),
     "a page": (b"<html>", "got XML or a page"),
     "two columns of one name": (b"time,A,A\n1,0,0\n", "log:1:1: error: column 'A' appears twice"),
     "too few fields": (b"time,A\n1,0\n2\n3,1\n4\n", "log:3:1: error: expected 2 fields, got 1; 1 more like this"),
@@ -186,6 +201,103 @@ TOLD = {
     "two labels of an activity": ("2026-03-03 07:00:00 A ON x begin\n2026-03-03 07:00:00 A ON y end\n2026-03-03 07:00:02 A OFF\n", "1,1,", []),
     "a lost reading": ("time,A\n1,0\n2,1\n3,0\n4,0\n6,0\n7,1\n", "0,1,0,0,,0,1", []),
 }
+
+
+# What binary sensors say, (second, entity, state): a removed entity has no state, and "unavailable" isn't off.
+HOME = [(0, "binary_sensor.hall_motion", "off"), (0, "binary_sensor.desk_motion", "unavailable"), (0, "sensor.hall", "21.5"),
+        (2, "binary_sensor.hall_motion", "on"), (3, "binary_sensor.desk_motion", "off"), (5, "binary_sensor.hall_motion", "off"),
+        (6, "binary_sensor.desk_motion", "on"), (7, "sensor.hall", "21.6"), (8, "binary_sensor.desk_motion", ""),
+        (9, "binary_sensor.hall_motion", "on"), (10, "binary_sensor.hall_motion", "off")]
+HOME_ROWS = {"hall": "0011100001.", "desk": "...00011..."}
+START = datetime.datetime(2026, 3, 2, 7, tzinfo=UTC)
+
+
+class Database(Case):
+    def make(self, version, old=lambda second: False, name="home-assistant_v2.db", runs=()):
+        """A database of that schema; `old(second)`: rows that weren't brought to it yet."""
+        path = self.folder / name
+        path.unlink(missing_ok=True)
+        base = sqlite3.connect(path)
+        base.execute("PRAGMA journal_mode=WAL")
+        base.execute("CREATE TABLE schema_changes (change_id INTEGER PRIMARY KEY, schema_version INTEGER)")
+        base.execute("INSERT INTO schema_changes (schema_version) VALUES (?)", (version,))
+        base.execute("CREATE TABLE recorder_runs (run_id INTEGER PRIMARY KEY, start DATETIME, end DATETIME)")
+        columns = ["entity_id TEXT", "state TEXT", "last_changed DATETIME", "last_updated DATETIME"]
+        columns += ["last_changed_ts FLOAT", "last_updated_ts FLOAT"] if version >= 31 else []
+        columns += ["metadata_id INTEGER"] if version >= 38 else []
+        base.execute(f"CREATE TABLE states (state_id INTEGER PRIMARY KEY, {', '.join(columns)})")
+        base.execute("CREATE TABLE states_meta (metadata_id INTEGER PRIMARY KEY, entity_id TEXT)") if version >= 38 else None
+        entities = sorted({entity for _, entity, _ in HOME})
+        if version >= 38:
+            base.executemany("INSERT INTO states_meta VALUES (?, ?)", enumerate(entities))
+        text = lambda second: (START + datetime.timedelta(seconds=second)).strftime("%Y-%m-%d %H:%M:%S.%f")
+        changed = {}
+        for second, entity, state in sorted([*HOME, (4, "binary_sensor.hall_motion", "on")]):  # whose attributes change
+            is_attribute = changed.get(entity, (0, ""))[1] == state
+            changed[entity] = changed[entity] if is_attribute else (second, state)
+            row = {"state": state}
+            if version < 31 or old(second):
+                row |= {"last_updated": text(second), "last_changed": text(changed[entity][0])}
+            else:
+                row |= {"last_updated_ts": START.timestamp() + second}
+                row |= {"last_changed_ts": START.timestamp() + changed[entity][0]} if is_attribute else {}
+            row |= {"metadata_id": entities.index(entity)} if version >= 38 and not old(second) else {"entity_id": entity}
+            base.execute(f"INSERT INTO states ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})", list(row.values()))
+        base.executemany("INSERT INTO recorder_runs (start, end) VALUES (?, ?)",
+                         [(text(start), None if end is None else text(end)) for start, end in runs])
+        base.commit()
+        return path, base
+
+    def motion(self, *args, **kwargs):
+        rows = list(csv.DictReader(io.StringIO(self.rows(*args, "--window", 1, **kwargs))))
+        return {name: "".join(row[f"binary_sensor.{name}_motion"] or "." for row in rows) for name in HOME_ROWS}, rows[0]["time"]
+
+    def test_every_schema_and_half_of_one(self):
+        for version, old in ((25, lambda s: False), (31, lambda s: False), (35, lambda s: s > 4), (38, lambda s: False),
+                             (48, lambda s: s < 6), (48, lambda s: s % 2)):
+            with self.subTest(version):
+                path, base = self.make(version, old)
+                base.close()
+                before = path.read_bytes()
+                self.assertEqual(self.motion(path), (HOME_ROWS, "2026-03-02T07:00:01"))
+                self.assertEqual((path.read_bytes(), [one.name for one in self.folder.iterdir() if one.name.startswith("home")]),
+                                 (before, [path.name]))
+        told = run("log", path)[0]
+        self.assertIn("events of Home Assistant's database, 2026-03-02T07:00:00 to 2026-03-02T07:00:10 ", told)
+        (self.folder / "map.yaml").write_text(run("log", path, "--print-map")[0])
+        self.assertEqual(self.motion(path, "--map", self.folder / "map.yaml")[0], HOME_ROWS)
+
+    def test_while_home_assistant_is_running_and_in_a_copy_that_can_t_be_written_to(self):
+        path, base = self.make(48)  # what was written last stands in the -wal file
+        self.assertEqual(self.motion(path)[0], HOME_ROWS)
+        base.close()
+        only = self.folder / "read only"
+        only.mkdir()
+        copy = pathlib.Path(shutil.copy(path, only / "50 % copy?#.db"))
+        copy.chmod(0o444)
+        only.chmod(0o555)
+        self.addCleanup(only.chmod, 0o755)
+        self.assertEqual(self.motion(copy)[0], HOME_ROWS)
+
+    def test_nothing_is_known_while_home_assistant_wasn_t_running(self):
+        path, base = self.make(48, runs=[(-100, -50), (0, 5.5), (8.5, None)])
+        base.close()
+        self.assertEqual(self.motion(path)[0], {"hall": "00111....1.", "desk": "...00.11..."})
+
+    def test_other_databases_and_other_ways(self):
+        path, base = self.make(48)
+        base.close()
+        self.assertIn("got a database (SQLite)", run("log", "-", input=path.read_bytes(), code=3)[1])
+        other = sqlite3.connect(self.folder / "other.sqlite")
+        other.execute("CREATE TABLE frames (x REAL)")
+        other.commit()
+        other.close()
+        self.assertIn("a database (SQLite) that isn't Home Assistant's: it has no table of states",
+                      run("log", self.folder / "other.sqlite", code=3)[1])
+        self.assertIn("expected a text, got a database (SQLite)", run("control", path, "--delay", 5, code=3)[1])
+        self.assertIn("expected a text, got a database (SQLite)", run("log", path, "--map", path, code=3)[1])
+        (self.folder / "cut.db").write_bytes(path.read_bytes()[:6000])
+        self.assertIn("can't be read", run("log", self.folder / "cut.db", code=4)[1])
 
 
 class Odd(Case):

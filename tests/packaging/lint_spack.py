@@ -13,7 +13,7 @@ import types
 
 # What PirsimDeps.cmake calls them, where Spack's name is another.
 CALLED = {"Eigen3": "eigen", "VEGA": "vega", "STB": "stb", "ZLIB": "zlib-api", "Python3": "python",
-          "Python": "python", "PkgConfig": "pkgconfig"}
+          "Python": "python", "PkgConfig": "pkgconfig", "SQLite3": "sqlite"}
 NOT_A_PACKAGE = {"Threads"}  # a compiler brings it along
 VIRTUAL = {"c", "cxx", "pkgconfig", "zlib-api"}
 

@@ -79,6 +79,7 @@ def test_what_a_log_tells(tmp_path):
     log = pirsim.read_log(file, window_s=60)
     a = log.facts[0]
     assert a.pulses.floor == pytest.approx(3.0, abs=0.01) and a.pulses.floor_share > 0.5
+    assert a.hold_s == 3.0
     assert a.pulses.n == pytest.approx(2000, abs=2) and a.pauses.floor > 50
     pair, = log.pairs
     assert (pair.a, pair.b) == ("A", "B") and pair.phi > 0.5

@@ -73,8 +73,20 @@ std::string stem_of_input(const fs::path& path) { return fs::path(name_of_input(
 
 fs::path folder_of_input(const fs::path& path) { return has_folder(path) ? path.parent_path() : fs::path(); }
 
+std::string_view name_of_binary(std::string_view bytes) {
+  if (bytes.starts_with("PK\x03\x04"))
+    return "a workbook or another archive (.xlsx, .ods, .zip): save the table as CSV";
+  if (bytes.starts_with("SQLite format 3"))
+    return "a database (SQLite): export its table as CSV; of Home Assistant's, `pirsim log FILE` reads the file itself";
+  if (bytes.starts_with("%PDF")) return "a PDF";
+  if (bytes.starts_with("PAR1")) return "a Parquet file: save the table as CSV";
+  return {};
+}
+
 std::string text_from(std::string bytes, const std::string& name) {
   const std::string_view whole = bytes;
+  if (const std::string_view kind = name_of_binary(whole); !kind.empty())
+    throw Error(ErrorCode::input, {name}, "expected a text, got " + std::string(kind));
   if (whole.starts_with(std::string_view("\xFF\xFE\0\0", 4)) || whole.starts_with(std::string_view("\0\0\xFE\xFF", 4)))
     throw Error(ErrorCode::input, {name, 1, 1}, "UTF-32 isn't read: save the file as UTF-8");
   if (whole.starts_with("\xFF\xFE")) {

@@ -34,6 +34,9 @@ constexpr std::size_t max_text_file_bytes = 16'000'000;
 /// Where the files that it names are looked for: beside it, or in the working folder if it has no folder of its own.
 [[nodiscard]] std::filesystem::path folder_of_input(const std::filesystem::path& path);
 
+/// By its first 16 bytes, what holds no text but is often given for one, and what to do; empty for anything else.
+[[nodiscard]] std::string_view name_of_binary(std::string_view bytes);
+
 /// As Input::text(), of bytes; `name` stands in messages.
 [[nodiscard]] std::string text_from(std::string bytes, const std::string& name);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/files/input.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -21,16 +22,6 @@ fs::path readable(fs::path path) {
   if (status.type() == fs::file_type::not_found) throw Error(ErrorCode::io, Where{path.string()}, "no such file");
   if (fs::is_directory(status)) throw Error(ErrorCode::io, Where{path.string()}, "is a directory");
   return path;
-}
-
-/// What holds no text but is often given for one.
-std::string name_of_binary(std::string_view bytes) {
-  if (bytes.starts_with("PK\x03\x04"))
-    return "a workbook or another archive (.xlsx, .ods, .zip): save the table as CSV";
-  if (bytes.starts_with("SQLite format 3")) return "a database: export its table as CSV";
-  if (bytes.starts_with("%PDF")) return "a PDF";
-  if (bytes.starts_with("PAR1")) return "a Parquet file: save the table as CSV";
-  return {};
 }
 
 bool is_plain(std::string_view line) {
@@ -63,9 +54,8 @@ void LineReader::begin() {
     hash_.add({bytes.data(), n});
     head_.append(bytes.data(), n);
   }
-  if (const std::string kind = name_of_binary(head_); !kind.empty()) {
-    throw Error(ErrorCode::input, Where{path_.string()}, "expected a text, got " + kind);
-  }
+  if (const std::string_view kind = name_of_binary(head_); !kind.empty())
+    throw Error(ErrorCode::input, Where{path_.string()}, "expected a text, got " + std::string(kind));
   const Compression compression = head_.starts_with("\x1F\x8B")           ? Compression::gzip
                                   : head_.starts_with("\x28\xB5\x2F\xFD") ? Compression::zstd
                                                                           : Compression::none;

@@ -59,6 +59,15 @@ LogLengths lengths_of(const std::vector<LogRun>& runs, std::int32_t state) {
   return lengths_of(std::move(lengths));
 }
 
+std::optional<double> hold_told_by(const LogLengths& pulses) {
+  constexpr std::size_t fewest = 20;
+  constexpr double least_share = 0.3;  // that is as long as the shortest; assumed (0.2-0.5)
+  constexpr double shortest_s = 0.5;   // assumed: detectors' own pulses are shorter (0.3-1)
+  constexpr double per_s = 10.0;       // no log tells more
+  if (pulses.n < fewest || pulses.floor_share < least_share || pulses.floor_s < shortest_s) return std::nullopt;
+  return std::round(per_s * pulses.floor_s) / per_s;
+}
+
 // ---------------------------------------------------------------------------------------------------------------- time
 
 /// Seconds of each hour of the day.
@@ -100,6 +109,7 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
   facts.pulses = lengths_of(runs, log_state::on);
   if (!log.has_readings()) facts.hold_s = hold_of(facts.pulses);
   facts.pauses = lengths_of(runs, log_state::off);
+  if (!log.has_readings()) facts.hold_s = hold_told_by(facts.pulses);
   if (log.clock == LogClock::elapsed) return facts;
   for (std::size_t hour = 0; hour < day.known.size(); ++hour) {
     if (day.known[hour] > 0.0) facts.motion_by_hour[hour] = day.motion[hour] / day.known[hour];

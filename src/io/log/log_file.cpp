@@ -18,15 +18,60 @@ bool has_no_data(std::string_view line) {
   return line.find_first_not_of(" \t;,") == std::string_view::npos || line.starts_with('#');
 }
 
+/// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
+bool is_before_table(std::string_view line) {
+  return line.starts_with("sep=") || line.starts_with("Plot Title:") || line.starts_with("\"Plot Title:");
+}
+
+/// What a log isn't, and what to do; empty if it may be a table.
+std::string_view what_is_no_table(std::string_view first) {
+  if (first.starts_with('<')) return "XML or a page: save the log as CSV";
+  if (first.starts_with('{')) return "JSON: save the log as CSV";
+  if (!first.starts_with('[')) return {};
+  const std::size_t inner = first.find_first_not_of(" \t", 1);
+  if (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos)
+    return "JSON: save the log as CSV";
+  return "lines of a text: those of openHAB, Zigbee2MQTT and ESPHome are read";
+}
+
+/// Dashes below the names of columns, as UCI 271 has them.
+bool is_ruler(std::string_view line) {
+  return line.starts_with("---") && line.find_first_not_of("- \t") == std::string_view::npos;
+}
+
+/// Columns that stand below each other, with a tab or two spaces between them, as fields with one tab.
+std::string with_tabs(std::string_view line) {
+  std::string result;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min(line.find_first_not_of(" \t", at), line.size());
+    const std::string_view gap = line.substr(at, end - at);
+    if (!gap.empty() && !result.empty()) result += gap == " " ? ' ' : '\t';
+    const std::size_t next = std::min(line.find_first_of(" \t", end), line.size());
+    result += line.substr(end, next - end);
+    at = next;
+  }
+  while (result.ends_with('\t')) result.pop_back();
+  return result;
+}
+
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 }  // namespace
 
 LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
-    : path_(path.string()), reading_(reading), observer_(observer), lines_(path), timer_({}, nullptr, 0.0) {
+    : path_(path.string()), reading_(reading), observer_(observer), timer_({}, nullptr, 0.0) {
+  if (is_database(path)) {
+    std::vector<std::string> entities{reading.map.people};
+    for (const LogMap::Sensor& sensor : reading.map.sensors) entities.push_back(sensor.in_log);
+    database_.emplace(path, entities);
+    head_.push_back({std::string(HomeDatabase::header), 1});
+  } else {
+    lines_.emplace(path);
+  }
   read_head();
-  shape_ = shape_of(head_, reading.map, path_);
+  shape_ = shape_of(head_, map_of_head(), path_);
   timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
+  if (shape_.end) end_timer_.emplace(*shape_.end, reading.zone, reading.map.shift_s);
   if (shape_.header_line > 0) head_.erase(head_.begin());
   n_read_fields_ = shape_.n_read_fields();
   values_.resize(shape_.sensors.size() + (shape_.people ? 1 : 0));
@@ -34,8 +79,12 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
 }
 
 std::optional<HeadLine> LogFile::next_line() {
-  while (const auto line = lines_.next()) {
-    if (!has_no_data(*line)) return HeadLine{std::string(*line), lines_.where().line};
+  if (database_) {
+    auto row = database_->next();
+    return row ? std::optional(HeadLine{std::move(*row), 0}) : std::nullopt;
+  }
+  while (const auto line = lines_->next()) {
+    if (!has_no_data(*line)) return HeadLine{is_ruled_ ? with_tabs(*line) : std::string(*line), lines_->where().line};
   }
   return std::nullopt;
 }
@@ -46,16 +95,52 @@ void LogFile::read_head() {
     auto line = next_line();
     if (!line) break;
     bytes += line->text.size();
-    if (head_.empty() && line->text.starts_with("sep=")) continue;  // for a spreadsheet
+    if (head_.empty() && is_before_table(line->text)) continue;
     head_.push_back(std::move(*line));
   }
   if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
-  const char first = head_.front().text.front();
-  if (first == '{' || first == '[' || first == '<') {
-    throw Error(
-        ErrorCode::input, {path_, head_.front().line, 1},
-        std::string("expected a table, got ") + (first == '<' ? "XML or a page" : "JSON") + ": save the log as CSV");
+  if (database_ && head_.size() == 1)
+    throw Error(ErrorCode::input, Where{path_}, "the database has no state of a binary sensor");
+  if (database_) return;
+  if (const auto writer = TextLines::writer_of(head_)) return read_text_head(*writer);
+  if (head_.size() > 1 && is_ruler(head_[1].text)) {
+    is_ruled_ = true;
+    head_.erase(head_.begin() + 1);
+    for (HeadLine& line : head_) line.text = with_tabs(line.text);
   }
+  if (const std::string_view other = what_is_no_table(head_.front().text); !other.empty())
+    throw Error(ErrorCode::input, {path_, head_.front().line, 1}, "expected a table, got " + std::string(other));
+}
+
+/// Until it tells something: in a program's log what is looked for may come late.
+void LogFile::read_text_head(TextLines::Writer writer) {
+  text_.emplace(writer, path_);
+  std::vector<HeadLine> rows{{std::string(TextLines::header), 0}};
+  rows.front().line = head_.front().line;
+  for (const HeadLine& line : head_) text_->read(line, rows, reading_.remarks);
+  while (rows.size() == 1) {
+    const auto line = next_line();
+    if (!line) {
+      throw Error(ErrorCode::input, {path_, 1, 1},
+                  "none of the lines of " + std::string(text_->name()) + " tells that a sensor changed");
+    }
+    text_->read(*line, rows, reading_.remarks);
+  }
+  head_ = std::move(rows);
+}
+
+/// What is known of the columns: all, if they were made here.
+LogMap LogFile::map_of_head() const {
+  LogMap map = reading_.map;
+  if (source().empty()) return map;
+  if (map.form != LogMap::Form::found && map.form != LogMap::Form::events)
+    throw Error(ErrorCode::input, Where{path_},
+                std::string(source()) + " has the form `events`, not what the map says");
+  map.form = LogMap::Form::events;
+  map.time = {"time"};
+  map.sensor_column = "sensor";
+  map.state_column = "state";
+  return map;
 }
 
 void LogReading::note_row(std::int64_t us) {
@@ -158,7 +243,8 @@ void LogFile::fault(std::string_view kind, int line, std::size_t column, Message
       kind,
       [&] {  // counted in the line as it stands, where fields are parts of it
         int at = 1;
-        for (std::size_t i = 0; i < std::min(column, fields_.size()) && shape_.separator != ' '; ++i)
+        for (std::size_t i = 0; i < std::min(column, fields_.size()) && shape_.separator != ' ' && source().empty();
+             ++i)
           at += static_cast<int>(fields_[i].size()) + 1;
         return Where{path_, line, at};
       },
@@ -179,10 +265,22 @@ void LogFile::remark(std::string_view kind, int line, Message message) {
 void LogFile::read() {
   for (const HeadLine& line : std::exchange(head_, {})) take(line.text, line.line);
   constexpr std::uint64_t now_and_then = 1U << 14U;
-  while (const auto line = lines_.next()) {
-    if (has_no_data(*line)) continue;
-    take(*line, lines_.where().line);
+  std::vector<HeadLine> rows;
+  const auto tell = [&] {
     if (observer_.read && reading_.n_rows % now_and_then == 0) observer_.read(reading_.n_rows);
+  };
+  while (database_ || text_ || is_ruled_) {
+    const auto line = next_line();
+    if (!line) return;
+    rows.assign(text_ ? 0 : 1, *line);
+    if (text_) text_->read(*line, rows, reading_.remarks);
+    for (const HeadLine& row : rows) take(row.text, row.line);
+    tell();
+  }
+  while (const auto line = lines_->next()) {  // without a copy of each
+    if (has_no_data(*line)) continue;
+    take(*line, lines_->where().line);
+    tell();
   }
 }
 
@@ -200,10 +298,10 @@ std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::st
                                     (is_elapsed ? "seconds, or hours:minutes:seconds" : "2026-03-02T08:30"));
 }
 
-std::optional<std::int64_t> LogFile::time_of_row(int line) {
-  LogTimer::Read read = timer_.read(fields_);
+std::optional<std::int64_t> LogFile::time_of_row(LogTimer& timer, const TimeColumns& columns, int line) {
+  LogTimer::Read read = timer.read(fields_);
   if (!read.us) {
-    fault("time", line, shape_.time.first, [&] { return read.fault; });
+    fault("time", line, columns.first, [&] { return read.fault; });
     return std::nullopt;
   }
   if (read.oddity == LogTimer::Oddity::ambiguous)
@@ -213,7 +311,7 @@ std::optional<std::int64_t> LogFile::time_of_row(int line) {
     });
   if (read.oddity == LogTimer::Oddity::missing)
     remark("missing", line, [&] {
-      return quoted(fields_[shape_.time.first]) + " is a time that " + reading_.map.time_zone +
+      return quoted(fields_[columns.first]) + " is a time that " + reading_.map.time_zone +
              " left out, when clocks were put forward: is it another zone?";
     });
   return read.us;
@@ -230,11 +328,12 @@ void LogFile::take(std::string_view line, int number) {
     return fault("fields", number, 0,
                  [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(fields_.size()); });
   }
-  const auto us = time_of_row(number);
+  const auto us = time_of_row(timer_, shape_.time, number);
   if (!us) return;
   ++reading_.n_rows;
   reading_.note_row(*us);
   if (shape_.form == LogMap::Form::events) return take_event(*us, number);
+  if (shape_.form == LogMap::Form::intervals) return take_interval(*us, number);
   read_values(number);
   readings_ ? take_readings(*us, number) : take_changes(*us, number);
 }
@@ -306,17 +405,47 @@ void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, int lin
   reading_.events.add(track, us, log_state::unknown);
   if (track.odd_text.empty()) {
     track.odd_at = {path_, line, 0};
-    track.odd_text = fields_[shape_.state];
+    track.odd_text = fields_[*shape_.state];
   }
 }
 
+EventTracks::Track* LogFile::track_of_row(int line) {
+  EventTracks::Track* track = reading_.events.track(fields_[shape_.sensor]);
+  if (track == nullptr) {
+    fault("sensors", line, shape_.sensor,
+          [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
+  }
+  return track;
+}
+
+void LogFile::take_interval(std::int64_t us, int line) {
+  const auto end = time_of_row(*end_timer_, *shape_.end, line);
+  if (!end) return;
+  if (*end < us) {
+    return fault("end", line, shape_.end->first, [&] {
+      return "it ends at " + quoted(fields_[shape_.end->first]) + ", before it begins at " +
+             quoted(fields_[shape_.time.first]);
+    });
+  }
+  EventTracks::Track* track = track_of_row(line);
+  if (track == nullptr) return;
+  const auto state = shape_.state ? read_state(fields_[*shape_.state]) : std::optional(log_state::on);
+  if (!state || *state == log_state::unknown)
+    return fault("state", line, *shape_.state,
+                 [&] { return quoted(fields_[*shape_.state]) + " doesn't say whether this is motion"; });
+  reading_.note_row(*end);
+  ++track->n_states;
+  if (*state == log_state::off) return;  // as between all intervals
+  reading_.events.add(*track, us, log_state::on);
+  reading_.events.add(*track, *end, log_state::off);
+  require_few_events(line);
+}
+
 void LogFile::take_event(std::int64_t us, int line) {
-  const std::string_view name = fields_[shape_.sensor], text = fields_[shape_.state];
+  const std::string_view name = fields_[shape_.sensor], text = fields_[*shape_.state];
   const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
-  EventTracks::Track* track = reading_.events.track(name);
-  if (track == nullptr)
-    return fault("sensors", line, shape_.sensor,
-                 [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
+  EventTracks::Track* track = track_of_row(line);
+  if (track == nullptr) return;
   const auto value = is_people ? read_count(text) : read_state(text);
   if (!value) return take_odd_event(*track, us, line);
   ++track->n_states;
@@ -329,6 +458,10 @@ void LogFile::take_event(std::int64_t us, int line) {
     remark("backward", line,
            [&] { return "the times of " + quoted(name) + " step back here; its events are put in order"; });
   }
+  require_few_events(line);
+}
+
+void LogFile::require_few_events(int line) const {
   if (reading_.events.n_events() > limits::log_changes)
     throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " events");
 }

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "io/files/line_reader.hpp"
+#include "io/log/home_database.hpp"
 #include "io/log/log_remarks.hpp"
 #include "io/log/log_shape.hpp"
 #include "io/log/log_timer.hpp"
 #include "io/log/log_tracks.hpp"
+#include "io/log/text_lines.hpp"
 #include "pirsim/log.hpp"
 
 namespace pirsim::io {
@@ -46,20 +48,31 @@ class LogFile {
   [[nodiscard]] LogTimer& timer() noexcept { return timer_; }
   /// None: events, or rows of changes.
   [[nodiscard]] std::optional<ReadingTracks>& readings() noexcept { return readings_; }
-  [[nodiscard]] InputFile file() const { return lines_.file(); }
+  [[nodiscard]] InputFile file() const { return database_ ? database_->file() : lines_->file(); }
+  /// "openHAB's log"; none of a table.
+  [[nodiscard]] std::string_view source() const {
+    return text_ ? text_->name() : database_ ? HomeDatabase::called : std::string_view();
+  }
+  /// Lines of that that tell no change.
+  [[nodiscard]] std::uint64_t n_other_lines() const { return text_ ? text_->n_other() : 0; }
   /// What a map's from and to say in this log's time; none for no text. Throws Error(usage).
   [[nodiscard]] std::optional<std::int64_t> limit(const std::string& key, const std::string& text) const;
 
  private:
   [[nodiscard]] std::optional<HeadLine> next_line();
   void read_head();
+  void read_text_head(TextLines::Writer writer);
+  [[nodiscard]] LogMap map_of_head() const;
   void find_cadence();
   [[noreturn]] void refuse_head();
   void take(std::string_view line, int number);
-  [[nodiscard]] std::optional<std::int64_t> time_of_row(int line);
+  [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
   void take_readings(std::int64_t us, int line);
   void take_changes(std::int64_t us, int line);
   void take_event(std::int64_t us, int line);
+  void take_interval(std::int64_t us, int line);
+  [[nodiscard]] EventTracks::Track* track_of_row(int line);
+  void require_few_events(int line) const;
   void take_odd_event(EventTracks::Track& track, std::int64_t us, int line);
   void read_values(int line);
   void require_one_run(int line);
@@ -71,10 +84,14 @@ class LogFile {
   std::string path_;
   LogReading& reading_;
   const LogObserver& observer_;
-  LineReader lines_;
+  std::optional<LineReader> lines_;
+  std::optional<HomeDatabase> database_;  ///< or
+  std::optional<TextLines> text_;
+  bool is_ruled_ = false;  ///< a table for people
   std::vector<HeadLine> head_;
   LogShape shape_;
   LogTimer timer_;
+  std::optional<LogTimer> end_timer_;  ///< of intervals
   std::optional<ReadingTracks> readings_;
   std::size_t n_read_fields_ = 0;
   std::vector<std::string_view> fields_;

@@ -16,7 +16,8 @@ template <typename Value>
 using Names = std::vector<std::pair<std::string, Value>>;
 
 const Names<LogMap::Form>& forms() {
-  static const Names<LogMap::Form> names{{"wide", LogMap::Form::wide}, {"events", LogMap::Form::events}};
+  static const Names<LogMap::Form> names{
+      {"wide", LogMap::Form::wide}, {"events", LogMap::Form::events}, {"intervals", LogMap::Form::intervals}};
   return names;
 }
 const Names<LogMap::Rows>& kinds_of_rows() {
@@ -47,19 +48,34 @@ const std::string& word(const Names<Value>& names, Value value) {
 }
 
 /// `time: stamp`, or `time: [Date, Time]`.
-std::vector<std::string> read_time(YamlMap& map) {
-  const auto node = map.child("time");
+std::vector<std::string> read_time(YamlMap& map, const std::string& key) {
+  const auto node = map.child(key);
   if (!node) return {};
   std::vector<std::string> columns;
   if (node->is_list()) {
-    for (const YamlNode& item : read_list(*node, map.faults(), "time"))
-      columns.push_back(item.text(map.faults(), "time"));
+    for (const YamlNode& item : read_list(*node, map.faults(), key)) columns.push_back(item.text(map.faults(), key));
   } else {
-    columns.push_back(node->text(map.faults(), "time"));
+    columns.push_back(node->text(map.faults(), key));
   }
   if (columns.empty() || columns.size() > 2)
-    map.faults().error(node->where(), "time: expected a column, or those of date and time");
+    map.faults().error(node->where(), key + ": expected a column, or those of date and time");
   return columns;
+}
+
+/// `hold_s: 30`, or of some sensors `hold_s: {hall: 30}`.
+LogMap::Seconds read_seconds(YamlMap& map, const std::string& key, NumberRange range) {
+  LogMap::Seconds seconds;
+  const auto node = map.child(key);
+  if (!node) return seconds;
+  if (!node->is_map()) {
+    seconds.all = node->number(map.faults(), key, range);
+    return seconds;
+  }
+  const std::vector<YamlKey> keys = node->keys();
+  const std::vector<YamlNode> values = node->items();
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    seconds.each.emplace_back(keys[i].name, values[i].number(map.faults(), key + ": " + keys[i].name, range));
+  return seconds;
 }
 
 /// `sensors: {PIR1: S6_PIR}`, or `sensors: [S6_PIR, S7_PIR]` under their own names.
@@ -121,7 +137,8 @@ LogMap map_from(const YamlNode& root) {
   LogMap log;
   log.form = map.choice("form", log.form, forms());
   log.rows = map.choice("rows", log.rows, kinds_of_rows());
-  log.time = read_time(map);
+  log.time = read_time(map, "time");
+  log.end = read_time(map, "end");
   log.sensor_column = map.text("sensor");
   log.state_column = map.text("state");
   log.time_zone = map.text("time_zone");
@@ -133,7 +150,8 @@ LogMap map_from(const YamlNode& root) {
   constexpr NumberRange length{.min = 1e-3, .max = 4e5};
   log.interval_s = map.optional_number("interval_s", length);
   log.longest_gap_s = map.optional_number("longest_gap_s", {.min = 1e-3, .max = 1e8});
-  log.hold_s = map.optional_number("hold_s", length);
+  log.hold_s = read_seconds(map, "hold_s", length);
+  log.longest_motion_s = read_seconds(map, "longest_motion_s", length);
   log.shift_s = map.number("shift_s", log.shift_s, {.min = -1e6, .max = 1e6});
   log.from = map.text("from");
   log.to = map.text("to");
@@ -174,11 +192,20 @@ std::string to_yaml(const LogMap& map) {
   const auto number = [&](const char* key, const std::optional<double>& value) {
     if (value) line(key, csv_number(*value));
   };
+  const auto time = [&](const char* key, const std::vector<std::string>& columns) {
+    if (columns.size() == 1) text(key, columns.front());
+    if (columns.size() == 2) line(key, "[" + quoted_yaml(columns[0]) + ", " + quoted_yaml(columns[1]) + "]");
+  };
+  const auto seconds = [&](const char* key, const LogMap::Seconds& value) {
+    if (value.each.empty()) return number(key, value.all);
+    out << key << ":\n";
+    for (const auto& [sensor, s] : value.each) out << "  " << quoted_yaml(sensor) << ": " << csv_number(s) << '\n';
+  };
   line("pirsim_log", "1");
   line("form", word(forms(), map.form));
   line("rows", word(kinds_of_rows(), map.rows));
-  if (map.time.size() == 1) text("time", map.time.front());
-  if (map.time.size() == 2) line("time", "[" + quoted_yaml(map.time[0]) + ", " + quoted_yaml(map.time[1]) + "]");
+  time("time", map.time);
+  time("end", map.end);
   text("sensor", map.sensor_column);
   text("state", map.state_column);
   text("time_zone", map.time_zone);
@@ -191,7 +218,8 @@ std::string to_yaml(const LogMap& map) {
     out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word(meanings(), map.people_mean) << "}\n";
   number("interval_s", map.interval_s);
   number("longest_gap_s", map.longest_gap_s);
-  number("hold_s", map.hold_s);
+  seconds("hold_s", map.hold_s);
+  seconds("longest_motion_s", map.longest_motion_s);
   if (map.shift_s != 0.0) number("shift_s", map.shift_s);
   text("from", map.from);
   text("to", map.to);

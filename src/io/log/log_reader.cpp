@@ -64,7 +64,7 @@ class ReadingParts {
     return log_.sensors.emplace_back(LogTrack{name_of(log_.map, in_log), in_log, {}, 0});
   }
   std::int64_t* last_of(const LogTrack& track) {
-    const auto found = std::ranges::find(last_, track.in_log, &Last::in_log);
+    const auto found = std::ranges::find(last_, track.name, &Last::name);  // a column may be the people's, too
     return found == last_.end() ? nullptr : &found->us;
   }
   /// With readings until `last` alone.
@@ -79,7 +79,7 @@ class ReadingParts {
     std::int64_t* last = last_of(track);
     if (last == nullptr) {
       track.changes = std::move(changes);
-      last_.push_back({track.in_log, part.last_us()});
+      last_.push_back({track.name, part.last_us()});
     } else {
       if (*last >= part.first_us())
         throw Error(ErrorCode::input, where,
@@ -94,7 +94,7 @@ class ReadingParts {
   }
 
   struct Last {
-    std::string in_log;
+    std::string name;
     std::int64_t us;
   };
   Log& log_;
@@ -174,14 +174,54 @@ std::vector<LogChange> clipped(std::vector<LogChange> changes, std::int64_t from
   return changes;
 }
 
-LogTrack event_track(EventTracks::Track& track, const LogReading& reading, const Log& log, std::int32_t unknown) {
+/// A map's seconds of this sensor.
+std::optional<std::int64_t> of_sensor(const LogMap::Seconds& seconds, const Log& log, const std::string& in_log) {
+  const std::string name = name_of(log.map, in_log);
+  std::optional<double> s = seconds.all;
+  for (const auto& [sensor, own] : seconds.each) {
+    if (sensor == name || sensor == in_log) s = own;
+  }
+  return s ? std::optional(std::llround(*s * 1e6)) : std::nullopt;
+}
+
+LogTrack event_track(EventTracks::Track& track, LogReading& reading, const Log& log, std::int32_t unknown) {
   const bool is_people = unknown == log_state::unknown_count;
-  const auto hold_us =
-      reading.map.hold_s && !is_people ? std::optional(std::llround(*reading.map.hold_s * 1e6)) : std::nullopt;
-  std::vector<LogChange> changes = changes_of(track, hold_us);
+  const auto remark = [&](const std::string& before, const std::string& after) {
+    return [&reading, &track, &log, before, after](std::int64_t us) {
+      const auto where = [&] { return Where{log.files.front().path}; };
+      const auto message = [&] {
+        return before + track.in_log + after + to_text({us, 0}, log.clock) +
+               (log.clock == LogClock::zoned ? " UTC" : "");
+      };
+      reading.remarks.add(before + track.in_log, where, message);
+    };
+  };
+  MotionEnds ends;
+  if (!is_people) {
+    ends = {of_sensor(reading.map.hold_s, log, track.in_log),
+            of_sensor(reading.map.longest_motion_s, log, track.in_log)};
+  }
+  std::vector<LogChange> changes =
+      log.map.form == LogMap::Form::intervals
+          ? united(track, *reading.first_us,
+                   remark("overlapping intervals of '", "' are one: another begins within one at "))
+          : changes_of(track, ends,
+                       remark("motion of '",
+                              "' is unknown after longest_motion_s, since nothing more is told of what begins at "));
   if (const auto silences = reading.silences(); !silences.empty()) changes = without(changes, silences, unknown);
   return {is_people ? "people" : name_of(log.map, track.in_log), track.in_log,
           clipped(std::move(changes), log.begin_us, log.end_us), track.n_states + track.n_other};
+}
+
+/// Those that a map has seconds of.
+void require_sensors(const Log& log, const LogMap::Seconds& seconds, const std::string& key) {
+  for (const auto& [sensor, s] : seconds.each) {
+    std::vector<std::string> names;
+    for (const LogTrack& track : log.sensors) names.insert(names.end(), {track.name, track.in_log});
+    if (std::ranges::find(names, sensor) != names.end()) continue;
+    throw Error(ErrorCode::input, Where{log.files.front().path},
+                key + " of a map: no sensor of the log is called '" + sensor + "'" + near_or_all(sensor, names));
+  }
 }
 
 void finish_events(Log& log, LogReading& reading) {
@@ -207,6 +247,8 @@ void finish_events(Log& log, LogReading& reading) {
     }
     log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
   }
+  require_sensors(log, log.map.hold_s, "hold_s");
+  require_sensors(log, log.map.longest_motion_s, "longest_motion_s");
   if (log.sensors.empty()) {
     throw Error(
         ErrorCode::input, where,
@@ -225,9 +267,13 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   map.time = {shape.names[shape.time.first]};
   if (shape.time.second) map.time.push_back(shape.names[*shape.time.second]);
   map.dates = shape.time.order;
-  if (shape.form == LogMap::Form::events) {
+  if (shape.end) {
+    map.end = {shape.names[shape.end->first]};
+    if (shape.end->second) map.end.push_back(shape.names[*shape.end->second]);
+  }
+  if (shape.form != LogMap::Form::wide) {
     map.sensor_column = shape.names[shape.sensor];
-    map.state_column = shape.names[shape.state];
+    if (shape.state) map.state_column = shape.names[*shape.state];
   } else {
     map.rows = log.has_readings() ? LogMap::Rows::readings : LogMap::Rows::changes;
   }
@@ -257,8 +303,9 @@ void remark_constant_sensors(const Log& log, LogReading& reading) {
     const std::string always = has(log_state::on)    ? "is never off"
                                : has(log_state::off) ? "is never on"
                                                      : "is never known";
-    const std::string hint =
-        has(log_state::on) && !log.has_readings() ? "; if its log tells motion alone, say hold_s in a map" : "";
+    const std::string hint = has(log_state::on) && !log.has_readings()
+                                 ? "; if its log tells motion alone, say `hold_s: {" + track.name + ": 30}` in a map"
+                                 : "";
     reading.remarks.add(
         "constant " + always, [&] { return Where{log.files.front().path}; },
         [&] { return "sensor '" + track.name + "' " + always + hint; });
@@ -276,6 +323,13 @@ void check_names(const Log& log) {
   }
 }
 
+/// Intervals tell them themselves.
+void require_no_ends(const LogMap& map, const std::string& file) {
+  if (map.hold_s == LogMap::Seconds{} && map.longest_motion_s == LogMap::Seconds{} && !map.longest_gap_s) return;
+  throw Error(ErrorCode::input, Where{file},
+              "intervals tell when motion ends: hold_s, longest_motion_s and longest_gap_s of a map don't fit them");
+}
+
 std::vector<LogOffset> in_order(std::vector<LogOffset> offsets) {
   std::ranges::stable_sort(offsets, {}, &LogOffset::from_us);
   const auto same = [](const LogOffset& a, const LogOffset& b) { return a.offset_s == b.offset_s; };
@@ -286,6 +340,10 @@ std::vector<LogOffset> in_order(std::vector<LogOffset> offsets) {
 void require_one_form(const LogFile& first, LogFile& other, LogFile& first_again) {
   const bool is_same =
       first.shape().form == other.shape().form && first_again.readings().has_value() == other.readings().has_value();
+  if (!other.source().empty() && other.timer().clock() == LogClock::elapsed) {
+    throw Error(ErrorCode::input, Where{other.file().path},
+                "its times are times of day, so that files can't be put in order: join them in one");
+  }
   const bool is_same_clock = first_again.timer().clock() == other.timer().clock();
   if (is_same && is_same_clock) return;
   throw Error(ErrorCode::input, Where{other.file().path},
@@ -320,6 +378,8 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
   LogFile& first = *read.front();
   log.clock = first.timer().clock();
   log.n_rows = reading.n_rows;
+  log.source = first.source();
+  for (const auto& file : read) log.n_other_lines += file->n_other_lines();
   const auto refuse_part = [&] {
     throw Error(ErrorCode::usage, "nothing of the log is between from and to; its first time is " +
                                       to_text({*reading.first_us, 0}, log.clock) + (zone ? " UTC" : "") +
@@ -340,6 +400,8 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
         reading.to_us.value_or(*reading.last_us) < *reading.first_us)
       refuse_part();
     take_columns(log.map, first.shape());
+    log.map.form = first.shape().form;
+    if (log.map.form == LogMap::Form::intervals) require_no_ends(log.map, log.files.front().path);
     finish_events(log, reading);
   }
   if (zone) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "core/text.hpp"
@@ -108,13 +109,15 @@ class Finder {
   Finder(const HeadTable& table, const LogMap& map, const std::string& file) : table_(table), map_(map), file_(file) {}
 
   void find(LogShape& shape) {
-    find_time(shape.time);
+    if (find_intervals(shape)) return;
+    find_time(shape.time, map_.time);
     const auto events = map_.form == LogMap::Form::wide ? std::nullopt : sensor_and_state(shape.time);
     if (map_.form == LogMap::Form::events && !events)
       refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
-      std::tie(shape.sensor, shape.state) = *events;
+      shape.sensor = events->first;
+      shape.state = events->second;
     } else {
       find_wide(shape);
     }
@@ -186,9 +189,9 @@ class Finder {
     }
     return std::nullopt;
   }
-  void find_time(TimeColumns& time) const {
+  void find_time(TimeColumns& time, const std::vector<std::string>& told) const {
     std::vector<std::size_t> columns;
-    for (const std::string& name : map_.time) columns.push_back(named(name));
+    for (const std::string& name : told) columns.push_back(named(name));
     const bool is_told = !columns.empty();
     if (!is_told) {
       for (std::size_t i = 0; i < table_.n_columns(); ++i) columns.push_back(i);
@@ -215,7 +218,7 @@ class Finder {
     if (number && (is_told || says(*number) == NameSays::time || (table_.header_line == 0 && *number == 0)))
       return set_first(time, *number, Stamp::Kind::number);
     if (hour) return set_first(time, *hour, Stamp::Kind::time_of_day);
-    refuse((is_told ? "no times can be read from '" + joined(map_.time, "', '") + "'"
+    refuse((is_told ? "no times can be read from '" + joined(told, "', '") + "'"
                     : std::string("no column holds times; name it in a map: time")) +
            "; the columns and their first values: " + columns_in_words());
   }
@@ -229,6 +232,62 @@ class Finder {
   }
   [[nodiscard]] static bool is_of(const TimeColumns& time, std::size_t column) {
     return column == time.first || column == time.second;
+  }
+
+  // Intervals.
+
+  /// Columns of times that are called so.
+  [[nodiscard]] std::vector<std::string> times_called(std::span<const std::string_view> words) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      const bool is_called_so = std::ranges::any_of(words_of_name(table_.names[i]), [&](const std::string& word) {
+        return std::ranges::find(words, word) != words.end();
+      });
+      const auto kind = is_called_so ? kind_of(i) : std::nullopt;
+      const auto is_state = [](const std::string& text) { return read_state(text).has_value(); };
+      if (kind && (kind != Stamp::Kind::number || table_.count(i, is_state) < table_.rows.size()))
+        names.push_back(table_.names[i]);
+    }
+    return names;
+  }
+  /// A begin and an end in each row, called so by the header or a map: two times alone may be when something was seen
+  /// and when it was written down.
+  [[nodiscard]] bool find_intervals(LogShape& shape) const {
+    constexpr std::array<std::string_view, 4> begins{"start", "begin", "started", "from"};
+    constexpr std::array<std::string_view, 6> ends{"end", "stop", "ended", "stopped", "finish", "to"};
+    const bool is_told = map_.form == LogMap::Form::intervals || !map_.end.empty();
+    if (!is_told && map_.form != LogMap::Form::found) return false;
+    const std::vector<std::string> begin = map_.time.empty() ? times_called(begins) : map_.time;
+    const std::vector<std::string> end = map_.end.empty() ? times_called(ends) : map_.end;
+    if (begin.empty() || end.empty()) {
+      if (is_told) refuse("intervals need columns of their begins and ends; name them in a map: time and end");
+      return false;
+    }
+    find_time(shape.time, begin);
+    find_time(shape.end.emplace(), end);
+    if (shape.end->kind != shape.time.kind || shape.end->zero != shape.time.zero)
+      refuse("begins and ends of intervals are different kinds of time");
+    shape.form = LogMap::Form::intervals;
+    find_sensor_and_state(shape);
+    return true;
+  }
+  void find_sensor_and_state(LogShape& shape) const {
+    std::vector<std::size_t> called, texts;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (is_of(shape.time, i) || is_of(*shape.end, i)) continue;
+      if (says(i) == NameSays::state && has_states(i)) shape.state = i;
+      if (says(i) == NameSays::sensor) called.push_back(i);
+      if (is_text(i)) texts.push_back(i);
+    }
+    if (!map_.state_column.empty()) shape.state = named(map_.state_column);
+    const std::vector<std::size_t>& sensors = called.empty() ? texts : called;
+    if (map_.sensor_column.empty() && sensors.size() != 1) {
+      refuse(
+          "intervals, of which no column or several may name the sensor; say which in a map: sensor; the columns and "
+          "their first values: " +
+          columns_in_words());
+    }
+    shape.sensor = map_.sensor_column.empty() ? sensors.front() : named(map_.sensor_column);
   }
 
   // Events.
@@ -359,7 +418,8 @@ class Finder {
 }  // namespace
 
 std::size_t LogShape::n_read_fields() const {
-  std::size_t last = std::max({time.first, time.second.value_or(0), sensor, state, people.value_or(0)});
+  std::size_t last = std::max({time.first, time.second.value_or(0), sensor, state.value_or(0), people.value_or(0)});
+  if (end) last = std::max({last, end->first, end->second.value_or(0)});
   for (const std::size_t column : sensors) last = std::max(last, column);
   return last + 1;
 }

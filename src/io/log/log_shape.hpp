@@ -32,8 +32,10 @@ struct LogShape {
   std::vector<std::size_t> runs;    ///< columns that tell runs apart, of rows that have no clock
   std::vector<std::string> others;  ///< columns that nothing is read from
 
-  // Of events.
-  std::size_t sensor = 0, state = 0;
+  // Of events and intervals.
+  std::size_t sensor = 0;
+  std::optional<std::size_t> state;  ///< intervals may have none
+  std::optional<TimeColumns> end;    ///< of intervals
 
   /// Every row has so many fields; 0: at least those that are read, since what follows them is text or nothing.
   [[nodiscard]] std::size_t n_fields() const noexcept {

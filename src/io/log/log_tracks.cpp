@@ -54,28 +54,56 @@ bool EventTracks::add(Track& track, std::int64_t us, std::int32_t value) {
 
 namespace {
 
-/// An `on` ends after `hold_us`, unless another event comes before.
-std::vector<LogChange> with_ends(const std::vector<LogChange>& events, std::int64_t hold_us) {
+std::vector<LogChange> with_ends(const std::vector<LogChange>& events, const MotionEnds& ends,
+                                 const std::function<void(std::int64_t)>& lost) {
   std::vector<LogChange> result;
   for (std::size_t i = 0; i < events.size(); ++i) {
     result.push_back(events[i]);
-    const std::int64_t end = events[i].us + hold_us;
-    if (events[i].value == log_state::on && (i + 1 == events.size() || events[i + 1].us > end))
-      result.push_back({end, 0, log_state::off});
+    if (events[i].value != log_state::on) continue;
+    const bool is_last = i + 1 == events.size(), is_told = !is_last && events[i + 1].value == log_state::off;
+    const auto is_over = [&](std::optional<std::int64_t> after_us) {
+      return after_us && (is_last || events[i + 1].us > events[i].us + *after_us);
+    };
+    if (!is_told && is_over(ends.hold_us)) {
+      result.push_back({events[i].us + *ends.hold_us, 0, log_state::off});
+    } else if (is_over(ends.longest_us)) {
+      result.push_back({events[i].us + *ends.longest_us, 0, log_state::unknown});
+      lost(events[i].us);
+    }
   }
   return result;
 }
 
 }  // namespace
 
-std::vector<LogChange> changes_of(EventTracks::Track& track, std::optional<std::int64_t> hold_us) {
+std::vector<LogChange> changes_of(EventTracks::Track& track, const MotionEnds& ends,
+                                  const std::function<void(std::int64_t)>& lost) {
   std::vector<LogChange> events = std::exchange(track.events, {});
   if (!track.is_sorted) std::ranges::stable_sort(events, {}, &LogChange::us);
-  if (hold_us) events = with_ends(events, *hold_us);
+  if (ends.hold_us || ends.longest_us) events = with_ends(events, ends, lost);
   const auto same = [](const LogChange& a, const LogChange& b) { return a.value == b.value; };
   events.erase(std::unique(events.begin(), events.end(), same), events.end());
   events.shrink_to_fit();
   return events;
+}
+
+std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
+                              const std::function<void(std::int64_t)>& overlap) {
+  const std::vector<LogChange> events = std::exchange(track.events, {});
+  std::vector<std::pair<std::int64_t, std::int64_t>> given, whole;
+  for (std::size_t i = 0; i + 1 < events.size(); i += 2) given.emplace_back(events[i].us, events[i + 1].us);
+  std::ranges::sort(given);
+  for (const auto& [begin, end] : given) {
+    if (!whole.empty() && begin < whole.back().second) overlap(begin);
+    if (whole.empty() || begin > whole.back().second) whole.emplace_back(begin, end);
+    whole.back().second = std::max(whole.back().second, end);
+  }
+  std::vector<LogChange> changes{{begin_us, 0, log_state::off}};
+  for (const auto& [begin, end] : whole) {
+    changes.push_back({begin, 0, log_state::on});
+    changes.push_back({end, 0, log_state::off});
+  }
+  return changes;
 }
 
 }  // namespace pirsim::io

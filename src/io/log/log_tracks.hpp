@@ -77,7 +77,18 @@ class EventTracks {
   std::size_t n_events_ = 0;
 };
 
-/// Events in order of time, those that change nothing left out. hold_us: how long an `on` lasts whose end isn't told.
-[[nodiscard]] std::vector<LogChange> changes_of(EventTracks::Track& track, std::optional<std::int64_t> hold_us);
+/// What a map says of the ends of motion.
+struct MotionEnds {
+  std::optional<std::int64_t> hold_us;     ///< how long an `on` lasts whose end isn't told: no `off` comes next
+  std::optional<std::int64_t> longest_us;  ///< an `on` of which nothing was told for longer is unknown from there on
+};
+/// Events in order of time, those that change nothing left out. Calls lost(moment) where motion became unknown.
+[[nodiscard]] std::vector<LogChange> changes_of(EventTracks::Track& track, const MotionEnds& ends,
+                                                const std::function<void(std::int64_t)>& lost);
+
+/// Of events that are the begin and the end of intervals in turn: on where any interval is, off at all other times from
+/// begin_us on. Calls overlap(moment) where one begins within another.
+[[nodiscard]] std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
+                                            const std::function<void(std::int64_t)>& overlap);
 
 }  // namespace pirsim::io

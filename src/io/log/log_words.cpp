@@ -100,7 +100,7 @@ NameSays what_name_says(std::string_view name) {
                                   "slope", "volt", "batt",    "power", "pressure", "rssi",  "energy"};
   constexpr std::array devices{"door", "window", "switch", "lock", "hvac"};
   const std::string word = small(name);
-  if (is_one_of(times, word)) return NameSays::time;
+  if (is_one_of(times, word) || word.ends_with("_ts")) return NameSays::time;
   if (is_one_of(sensors, word)) return NameSays::sensor;
   if (is_one_of(states, word)) return NameSays::state;
   if (word == "count") return NameSays::count;

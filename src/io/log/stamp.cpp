@@ -38,8 +38,10 @@ class Scanner {
     text_.remove_prefix(word.size());
     return true;
   }
+  /// Also those that don't break, which JavaScript writes before PM.
   void skip_spaces() {
-    while (take(' ')) {
+    constexpr std::string_view no_break = "\xC2\xA0", narrow_no_break = "\xE2\x80\xAF";
+    while (take(' ') || take_word(no_break) || take_word(narrow_no_break)) {
     }
   }
   struct Number {
@@ -215,7 +217,8 @@ std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order) {
   const auto day = midnight(*parts, order);
   if (!day) return std::nullopt;
   if (scan.at_end()) return Stamp{Stamp::Kind::date, *day, 0, 0.0};
-  if (!scan.take_one_of("Tt ")) return std::nullopt;
+  const bool has_comma = scan.take(',');  // JavaScript's "5/24/2019, 7:50:03 PM"
+  if (!has_comma && !scan.take_one_of("Tt ")) return std::nullopt;
   scan.skip_spaces();
   const auto time = time_of_day(scan);
   scan.skip_spaces();

@@ -23,9 +23,10 @@ struct Stamp {
   double number = 0.0;
 };
 
-/// ISO 8601 and what spreadsheets make of it: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00", "12/22/2017 10:49:41 AM",
-/// "0:00:34", "1743962401"; none for any other text. `order` counts where the year comes last; months come first if
-/// neither it nor the numbers say otherwise. Days that don't exist, as 2025-02-30, are none.
+/// ISO 8601, what spreadsheets make of it, and JavaScript's local times: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00",
+/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "0:00:34", "1743962401"; none for any other text. `order` counts
+/// where the year comes last; months come first if neither it nor the numbers say otherwise. Days that don't exist, as
+/// 2025-02-30, are none.
 [[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order);
 
 /// What a text with a date tells of the order of dates; found: nothing, none: it has no date that ends in a year.

@@ -64,23 +64,25 @@ std::string names_in_words(const Log& log, const std::vector<std::size_t>& senso
 
 std::string log_in_words(const Log& log) {
   const double interval_s = static_cast<double>(log.interval_us) / 1e6;
-  const std::string form = log.map.form == LogMap::Form::events ? "events"
-                           : log.has_readings()                 ? "readings every " + shortest_number(interval_s) + " s"
-                                                                : "rows of changes";
-  return form + ", " + moment_in_words(log, log.begin_us) + " to " + moment_in_words(log, log.end_us) + " (" +
-         time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) + "), " + counted(log.n_rows, "row") +
-         ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
+  const std::string form = log.map.form == LogMap::Form::events      ? "events"
+                           : log.map.form == LogMap::Form::intervals ? "intervals"
+                           : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
+                                                : "rows of changes";
+  return form + (log.source.empty() ? "" : " of " + log.source) + ", " + moment_in_words(log, log.begin_us) + " to " +
+         moment_in_words(log, log.end_us) + " (" + time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) +
+         "), " + counted(log.n_rows, "row") + ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
 }
 
 Table sensor_table(const Log& log, const LogFacts& facts) {
-  Table table{{"sensor", "motion", "unknown", "pulses", "shortest", "median", "95 %", "shortest pause", "median pause",
-               "false triggers"},
+  Table table{{"sensor", "motion", "unknown", "pulses", "shortest", "hold", "median", "95 %", "shortest pause",
+               "median pause", "false triggers"},
               {}};
   const double whole_s = static_cast<double>(log.end_us - log.begin_us) / 1e6;
   for (const LogSensorFacts& sensor : facts.sensors) {
     const auto share = sensor.motion_share();
     table.rows.push_back({sensor.name, share ? percent(*share) : "", percent(std::max(0.0, sensor.unknown_s) / whole_s),
                           std::to_string(sensor.pulses.n), floor_in_words(sensor.pulses),
+                          sensor.hold_s ? time_in_words(*sensor.hold_s) : "not told",
                           quantile_in_words(sensor.pulses, sensor.pulses.median_s),
                           quantile_in_words(sensor.pulses, sensor.pulses.q95_s), floor_in_words(sensor.pauses),
                           quantile_in_words(sensor.pauses, sensor.pauses.median_s),
@@ -118,9 +120,9 @@ Table gap_table(const Log& log, const LogFacts& facts) {
 std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
   std::vector<std::string> notes;
   notes.push_back(
-      "Shortest: what one in a hundred doesn't reach, and how many of all are at most a tenth longer; if many are, it "
-      "is "
-      "the sensor's hold, of pauses its dead time" +
+      "Shortest: what one in a hundred doesn't reach, and how many of all are at most a tenth longer. If that are "
+      "three "
+      "in ten of twenty pulses of events, it is the sensor's hold; if they are many of the pauses, its dead time" +
       std::string(log.has_readings() ? "; readings can't tell what is shorter than their interval." : "."));
   const auto told =
       std::ranges::find_if(facts.sensors, [](const auto& sensor) { return sensor.false_triggers.has_value(); });
@@ -139,7 +141,9 @@ std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
                     (log.others.size() > most ? " and " + std::to_string(log.others.size() - most) + " more" : "") +
                     (log.n_other_rows > 0 ? " (" + counted(log.n_other_rows, "row") + ")" : "") + ".");
   }
-  if (!log.has_readings() && !log.map.longest_gap_s) {
+  if (log.n_other_lines > 0)
+    notes.push_back(counted(log.n_other_lines, "line") + " of " + log.source + " tell of something else.");
+  if (!log.has_readings() && log.map.form != LogMap::Form::intervals && !log.map.longest_gap_s) {
     notes.push_back("The longest time without any change is " + time_in_words(facts.longest_silence_s) +
                     ": it counts as known, unless a map says longest_gap_s.");
   }

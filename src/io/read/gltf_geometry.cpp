@@ -47,7 +47,8 @@ class MeshReader {
 
     const std::size_t n_vertices = accessors_.count(position->second);
     const std::size_t n_indices = primitive.indices >= 0 ? accessors_.count(primitive.indices) : n_vertices;
-    if (!budget_.take(n_vertices + n_indices)) {
+    const std::size_t n_triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ? n_indices / 3 : n_indices;  // or less
+    if (!budget_.take(n_vertices + n_triangles)) {
       const int larger = primitive.indices >= 0 && n_indices > n_vertices ? primitive.indices : position->second;
       const std::string place = "/accessors/" + std::to_string(larger) + "/count";
       return error(place,

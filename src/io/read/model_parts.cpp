@@ -29,7 +29,7 @@ ModelParts read_model_parts(const std::filesystem::path& file) {
     const auto [known, is_first] = meshes.try_emplace(node.mesh);
     if (is_first) known->second = detail::read_mesh(document, node.mesh, budget, remarks, warnings);
     if (known->second.triangles.empty()) continue;
-    if (!budget.take(known->second.positions.size() + known->second.triangles.size()))
+    if (!is_first && !budget.take(known->second.positions.size() + known->second.triangles.size()))
       remarks.error({file.string()}, "the copies of its meshes make the scene too large");
     remarks.throw_if_errors();
     model.parts.push_back({place, detail::transformed(known->second, shown.world_from_node, model.nodes.back().name)});

@@ -205,9 +205,8 @@ class SceneBuilder {
         node_error(placed.node, "/mesh", "its mesh has no triangles, so the area has no outline");
       return;
     }
-    if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
+    if (!is_first && !budget_.take(whole.positions.size() + whole.triangles.size()))
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
-    }
     const TriMesh world = transformed(whole, placed.world_from_node, node_name(document_.model, placed.node));
     if (!std::ranges::all_of(world.positions, is_in_world)) {
       return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");

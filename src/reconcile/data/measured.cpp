@@ -161,7 +161,9 @@ Measured measured_of(const Log& log, const SceneSpec& scene, const ScriptSpec& s
 Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene, const ScriptSpec& script,
                        const LogMap& map) {
   require_known_presence(script);
-  if (is_log(file)) return measured_of(io::read_log(std::span(&file, 1), map), scene, script);
+  // A pipe can't be looked into before it is read: a map says that it is a log.
+  const bool is_piped_log = map != LogMap{} && !std::filesystem::is_regular_file(file);
+  if (is_piped_log || is_log(file)) return measured_of(io::read_log(std::span(&file, 1), map), scene, script);
   if (map != LogMap{})
     throw Error(ErrorCode::usage, file.string() + " is no log (docs/formats/log.md), so that a map says nothing of it");
   return read_measured(file, frame_of(scene, script));

@@ -8,15 +8,13 @@
 
 #include "core/text.hpp"
 #include "io/files/line_reader.hpp"
+#include "io/log/home_database.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/log_facts.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::size_t fewest_pulses = 20;    ///< of a sensor whose hold is read off its log; assumed, as in calibrate
-constexpr double least_share_held = 0.3;     ///< of its pulses that are as long as the shortest; assumed (0.2-0.5)
-constexpr double least_hold_s = 0.5;         ///< assumed: detectors' own pulses are shorter (0.3-1)
 constexpr double longer_than_window = 1.25;  ///< times may readings be, since clocks of loggers are slow; assumed
 
 /// The words of a line, in small letters, cut at what separates fields.
@@ -159,14 +157,11 @@ class LogRuns {
     measured.holds_s.assign(frame_.sensors.size(), 0.0);
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       if (!columns_[sensor]) continue;
-      const LogLengths& pulses = facts.sensors[*columns_[sensor]].pulses;
-      const bool held = !log_.has_readings() && pulses.n >= fewest_pulses && pulses.floor_s >= least_hold_s &&
-                        pulses.floor_share >= least_share_held;
-      if (!held) continue;
-      constexpr double per_s = 10.0;  // no log tells more
-      measured.holds_s[sensor] = std::round(per_s * pulses.floor_s) / per_s;
+      const LogSensorFacts& told = facts.sensors[*columns_[sensor]];
+      if (!told.hold_s) continue;
+      measured.holds_s[sensor] = *told.hold_s;
       measured.notes.push_back(
-          {What::hold_told, pulses.n, {frame_.sensors[sensor], shortest_number(measured.holds_s[sensor])}});
+          {What::hold_told, told.pulses.n, {frame_.sensors[sensor], shortest_number(*told.hold_s)}});
     }
     const std::size_t empty = unknown_ - absent_.size() * (known_ + unknown_) / frame_.sensors.size();
     if (empty > 0) measured.notes.push_back({What::readings_empty, empty});
@@ -197,15 +192,20 @@ std::optional<std::string> first_line(const std::filesystem::path& file) {
 bool is_log(const std::filesystem::path& file) {
   std::error_code told_later;
   if (!std::filesystem::is_regular_file(file, told_later)) return false;
+  if (io::is_database(file)) return true;
   const std::optional<std::string> line = first_line(file);
   if (!line) return false;
   const std::vector<std::string> fields = fields_of(*line);
   const auto has = [&](std::string_view name) { return std::ranges::find(fields, name) != fields.end(); };
   if (has("time_s") || (has("sensor") && (has("seconds") || has("real")))) return false;
-  constexpr std::array<std::string_view, 8> times{"time",         "date",         "timestamp", "datetime",
-                                                  "last_changed", "last_updated", "entity_id", "date_time"};
+  constexpr std::array<std::string_view, 10> times{"time",         "date",           "timestamp", "datetime",
+                                                   "last_changed", "last_updated",   "entity_id", "date_time",
+                                                   "start",        "last_updated_ts"};
+  // "[2026-01-25 10:20:47] info: ..." of programs' text logs, HOBO's "Plot Title: ..."
   const bool begins_with_time = !line->empty() && std::isdigit(static_cast<unsigned char>(line->front())) != 0;
-  return begins_with_time || std::ranges::any_of(times, has);
+  const bool is_of_a_program =
+      line->starts_with('[') || line->starts_with("Zigbee2MQTT") || fields.front().starts_with("plottitle:");
+  return begins_with_time || is_of_a_program || std::ranges::any_of(times, has);
 }
 
 Measured measured_of(const Log& log, const StudyFrame& frame, std::optional<std::int64_t> begin_s) {

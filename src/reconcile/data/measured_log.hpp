@@ -12,7 +12,7 @@
 namespace pirsim::reconcile {
 
 /// Whether a file is a log rather than pirsim's own rows or sums: its first line has times and neither `time_s` nor
-/// sums. Pipes are read once, by whoever parses rows: they are none.
+/// sums, or it is a database. Pipes are read once, by whoever parses rows: they are none.
 [[nodiscard]] bool is_log(const std::filesystem::path& file);
 
 /// begin_s: of the script's clock, when its run begins (since 1970); none without a clock. Throws Error(input) for a

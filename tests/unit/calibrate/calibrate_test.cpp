@@ -12,6 +12,7 @@
 #include "pirsim/calibrate.hpp"
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
+#include "support/log_files.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -367,6 +368,43 @@ TEST_CASE("Counts say how far off they are, and for how long they are sure") {
   CHECK(counts.estimates.quantile(1, 0.95) == 2);
   counts.estimates = {2, {1, 0, 1, 0, 1, 0, 1, 0}};
   CHECK(how_sure(counts).empty());
+}
+
+namespace {
+
+/// Two sensors, each of which holds motion for a while and often sees more: every other pulse is longer.
+LogFacts facts_of_holds(double a_s, double b_s, double b_varies_s = 0.0) {
+  std::string text = "time,sensor,state\n";
+  const auto add = [&](int i, const std::string& sensor, double length_s) {
+    const double begin = 1000.0 * i, end = begin + length_s * (i % 2 == 0 ? 1.0 : 1.7);
+    text += std::to_string(begin) + ',' + sensor + ",on\n" + std::to_string(end) + ',' + sensor + ",off\n";
+  };
+  for (int i = 0; i < 40; ++i) {
+    add(i, "A", a_s);
+    add(i, "B", b_s + b_varies_s * i);
+  }
+  return facts_of(read_log_text(text));
+}
+
+}  // namespace
+
+TEST_CASE("Rooms have the hold that all of a log's sensors have, never a mean of two") {
+  const LogFacts mixed = facts_of_holds(10.0, 90.0);
+  CHECK(mixed.sensors[0].hold_s == 10.0);
+  CHECK(mixed.sensors[1].hold_s == 90.0);
+  try {
+    static_cast<void>(common_hold(mixed));
+    FAIL("a hold for both");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::input);
+    CHECK_THAT(error.what(), contains("A holds motion for 10 s; B holds motion for 90 s"));
+  }
+  CHECK(common_hold(facts_of_holds(10.0, 10.8)) == 10.0);
+  const LogFacts untold = facts_of_holds(90.0, 12.0, 3.0);  // of B's pulses none are alike
+  CHECK_FALSE(untold.sensors[1].hold_s);
+  CHECK_THROWS_AS(common_hold(untold), Error);
+  CHECK(common_hold(facts_of_holds(10.0, 12.0, 3.0)) == 10.0);
+  CHECK_FALSE(common_hold(facts_of(read_log_text("time,A,B\n1,0,1\n2,1,0\n3,0,0\n"))));
 }
 
 TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {

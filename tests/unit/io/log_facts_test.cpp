@@ -37,6 +37,8 @@ TEST_CASE("a hold and a dead time are found, single faults aside, and exponentia
   CHECK(held.pulses.n == 2000);
   CHECK(held.pulses.floor_s == Approx(4.8).margin(1e-4));
   CHECK(held.pulses.floor_share > 0.5);
+  CHECK(held.hold_s == 4.8);
+  CHECK_FALSE(free.hold_s);
   CHECK(held.pulses.shortest_s == Approx(0.02).margin(1e-4));
   CHECK(held.pauses.floor_s == Approx(2.3).margin(1e-4));
   CHECK(held.pauses.floor_share > 0.3);

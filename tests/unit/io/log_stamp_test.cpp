@@ -37,6 +37,9 @@ TEST_CASE("moments as loggers write them") {
   CHECK(us("2025-04-06T20:00:01 +0200") == moment);
   CHECK(us("2025-04-06 12:30:01-05:30") == moment);
   CHECK(us("2025-04-06 18:00:01 UTC") == moment);
+  CHECK(us("4/6/2025, 6:00:01 PM") == moment);
+  CHECK(us("4/6/2025, 6:00:01\xE2\x80\xAFPM") == moment);
+  CHECK(us("6.4.2025, 18:00:01") == moment);
   CHECK(parse_stamp("2025-04-06T20:00:01+02:00", LogMap::Dates::found)->offset_s == 7200);
   CHECK(us("2010-11-04 00:03:50.209589") == 1288829030 * s + 209589);
 }

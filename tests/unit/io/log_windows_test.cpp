@@ -247,6 +247,6 @@ TEST_CASE("silence beyond a stated length, and motion whose end isn't told") {
   CHECK(windows_of(read_log_text(text, map), 1.0) == Texts{"001.................0.", "....................1."});
   const std::string pulses = "time,sensor,state\n0,A,on\n2,A,on\n10,A,on\n12,A,off\n";
   LogMap hold;
-  hold.hold_s = 3.0;
+  hold.hold_s.all = 3.0;
   CHECK(windows_of(read_log_text(pulses, hold), 1.0) == Texts{"111110000011."});
 }

@@ -38,6 +38,7 @@ class Pirsim(CMakePackage):
     depends_on("nlopt@2.7:+cxx")
     depends_on("zlib-api")
     depends_on("zstd@1.4:")
+    depends_on("sqlite@3.22:")
     depends_on("openssl@3:")
     depends_on("date@3: +tz tzdb=system")
 
