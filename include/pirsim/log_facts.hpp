@@ -36,8 +36,6 @@ struct LogSensorFacts {
   double known_s = 0.0, unknown_s = 0.0;
   double motion_s = 0.0;
   LogLengths pulses;  ///< of motion
-  /// For which it holds motion, in tenths of a second: of events, where many pulses are as short as the shortest.
-  std::optional<double> hold_s;
   LogLengths pauses;
   /// How long the sensor holds motion, to a tenth of a second, if events tell it: of 20 pulses or more, three in ten
   /// are as long as the shortest.

@@ -138,10 +138,7 @@ void add_calibrate_command(CLI::App& app) {
       "--finish", [pool = options->pool.get()] { pool->part = DatasetWork::Part::finish; },
       "only weigh the rooms that are there");
   offer_dataset_work(command, options->pool);
-  command.callback([&command, options] {
-    require_one_standard_input(command);
-    run(*options);
-  });
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace pirsim::app

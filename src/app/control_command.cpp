@@ -266,10 +266,7 @@ void add_control_command(CLI::App& app) {
   command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")
       ->option_text("MINUTES");
   offer_quiet(command, inputs.verbosity);
-  command.callback([&command, options] {
-    require_one_standard_input(command);
-    control_light(*options);
-  });
+  command.callback([options] { control_light(*options); });
 }
 
 }  // namespace pirsim::app

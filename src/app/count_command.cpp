@@ -70,10 +70,7 @@ void add_count_command(CLI::App& app) {
       "--forward", [options] { options->pass = counting::Pass::forward; },
       "each reading by those before it alone (default: by those after it as well)");
   offer_quiet(command, options->verbosity);
-  command.callback([&command, options] {
-    require_one_standard_input(command);
-    count(*options);
-  });
+  command.callback([options] { count(*options); });
 }
 
 }  // namespace pirsim::app

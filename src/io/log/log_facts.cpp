@@ -41,14 +41,6 @@ LogLengths lengths_of(std::vector<double> lengths) {
   return facts;
 }
 
-std::optional<double> hold_of(const LogLengths& pulses) {
-  constexpr std::size_t fewest_pulses = 20;                     // assumed
-  constexpr double least_share_held = 0.3, least_hold_s = 0.5;  // assumed (0.2-0.5; 0.3-1: a detector's own pulses)
-  if (pulses.n < fewest_pulses || pulses.floor_share < least_share_held || pulses.floor_s < least_hold_s) return {};
-  constexpr double per_s = 10.0;  // no log tells more
-  return std::round(per_s * pulses.floor_s) / per_s;
-}
-
 /// Of the runs of `state` between two of the other one.
 LogLengths lengths_of(const std::vector<LogRun>& runs, std::int32_t state) {
   std::vector<double> lengths;
@@ -107,7 +99,6 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
   facts.unknown_s = in_seconds(log.end_us - log.begin_us) - facts.known_s;
   facts.never_changes = !was_on || !was_off;
   facts.pulses = lengths_of(runs, log_state::on);
-  if (!log.has_readings()) facts.hold_s = hold_of(facts.pulses);
   facts.pauses = lengths_of(runs, log_state::off);
   if (!log.has_readings()) facts.hold_s = hold_told_by(facts.pulses);
   if (log.clock == LogClock::elapsed) return facts;
