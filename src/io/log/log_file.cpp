@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/log/log_proof.hpp"
+#include "io/log/log_units.hpp"
 #include "io/log/log_words.hpp"
 #include "schema/limits.hpp"
 
@@ -14,8 +16,19 @@ namespace {
 constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
 constexpr std::uint64_t most_faults = 1000;
 
-bool has_no_data(std::string_view line) {
-  return line.find_first_not_of(" \t;,") == std::string_view::npos || line.starts_with('#');
+bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
+
+/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in them.
+bool is_comment(std::string_view line) {
+  if (!line.starts_with('#')) return false;
+  constexpr std::string_view separators = ",;\t";
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    const auto stamp = parse_stamp(line.substr(0, end), LogMap::Dates::found);
+    if (stamp && stamp->kind != Stamp::Kind::number) return false;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return true;
 }
 
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
@@ -25,12 +38,16 @@ std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"
 LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
     : path_(path.string()), reading_(reading), observer_(observer), lines_(path), timer_({}, nullptr, 0.0) {
   read_head();
-  shape_ = shape_of(head_, reading.map, path_);
+  shape_ = shape_of(head_, reading.map, path_, reading.zone, reading.rows);
   timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
   if (shape_.header_line > 0) head_.erase(head_.begin());
   n_read_fields_ = shape_.n_read_fields();
-  values_.resize(shape_.sensors.size() + (shape_.people ? 1 : 0));
-  if (shape_.form == LogMap::Form::wide) find_cadence();
+  values_.resize(shape_.sensors.size(), log_state::unknown);
+  if (shape_.people) values_.push_back(log_state::unknown_count);
+  reading.rows = shape_.rows;
+  if (shape_.rows != LogMap::Rows::readings) return;
+  if (shape_.cadence.interval_us <= 0) refuse_head();
+  readings_.emplace(shape_.cadence, values_);
 }
 
 std::optional<HeadLine> LogFile::next_line() {
@@ -46,7 +63,7 @@ void LogFile::read_head() {
     auto line = next_line();
     if (!line) break;
     bytes += line->text.size();
-    if (head_.empty() && line->text.starts_with("sep=")) continue;  // for a spreadsheet
+    if (head_.empty() && (line->text.starts_with("sep=") || is_comment(line->text))) continue;
     head_.push_back(std::move(*line));
   }
   if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
@@ -58,12 +75,39 @@ void LogFile::read_head() {
   }
 }
 
-void LogReading::note_row(std::int64_t us) {
+void LogReading::note_row(std::int64_t us, const std::string& path, int line) {
   first_us = std::min(first_us.value_or(us), us);
   last_us = std::max(last_us.value_or(us), us);
+  const std::int64_t month = us / (30 * us_per_day);
+  auto here = months.find(month);
+  if (here == months.end()) here = months.emplace(month, Month{us, us, {path, line, 1}}).first;
+  here->second.first_us = std::min(here->second.first_us, us);
+  here->second.last_us = std::max(here->second.last_us, us);
+  ++here->second.n_rows;
   if (!map.longest_gap_s) return;
   const auto [at, is_new] = busy.try_emplace(us / std::llround(*map.longest_gap_s * 1e6), Moments{us, us});
   at->second = {std::min(at->second.first_us, us), std::max(at->second.last_us, us)};
+}
+
+void LogReading::require_years() const {
+  constexpr std::int64_t longest_us = 366 * us_per_day;  // assumed: 200 to 400 days; who pauses for longer says so
+  const auto is_wanted = [&](const Month& month) {
+    return (!from_us || month.last_us >= *from_us) && (!to_us || month.first_us <= *to_us);
+  };
+  const std::int64_t allowed_us =
+      std::max(longest_us, map.longest_gap_s ? std::int64_t{std::llround(*map.longest_gap_s * 1e6)} : longest_us);
+  std::uint64_t n_before = 0;
+  for (auto at = months.begin(); at != months.end() && std::next(at) != months.end(); ++at) {
+    const Month &before = at->second, &after = std::next(at)->second;
+    n_before += before.n_rows;
+    if (after.first_us - before.last_us <= allowed_us || !is_wanted(before) || !is_wanted(after)) continue;
+    const bool is_late = 2 * n_before >= n_rows;
+    const auto moment = [](std::int64_t us) { return to_text({us, 0}, LogClock::local).substr(0, 10); };
+    throw Error(ErrorCode::input, is_late ? after.where : before.where,
+                "nothing is told from " + moment(before.last_us) + " to " + moment(after.first_us) +
+                    ": was the clock set here? If so, read the parts by themselves (from, to), or say longest_gap_s in "
+                    "a map");
+  }
 }
 
 std::vector<LogReading::Moments> LogReading::silences() const {
@@ -76,32 +120,6 @@ std::vector<LogReading::Moments> LogReading::silences() const {
   return found;
 }
 
-// ------------------------------------------------------------------------------------------------------------- cadence
-
-namespace {
-
-/// The value that this share of them doesn't exceed; reorders them.
-std::int64_t quantile(std::vector<std::int64_t>& values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
-/// The mean of those that are about the median: of seconds apart by 30 and 31.
-std::int64_t usual_step(const std::vector<std::int64_t>& apart, std::int64_t median) {
-  std::int64_t sum = 0, n = 0;
-  for (const std::int64_t step : apart) {
-    if (2 * step < median || step > 3 * median / 2) continue;
-    sum += step;
-    ++n;
-  }
-  constexpr std::int64_t ms = 1'000;
-  const std::int64_t mean = n > 0 ? sum / n : median;
-  return mean < 10 * ms ? mean : (mean + ms / 2) / ms * ms;
-}
-
-}  // namespace
-
 /// No two rows have different times.
 void LogFile::refuse_head() {
   readings_.emplace(ReadingTracks::Cadence{1, 1}, values_);
@@ -109,45 +127,6 @@ void LogFile::refuse_head() {
   if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
   throw Error(ErrorCode::input, {path_, head_.front().line, 1},
               "one reading alone doesn't tell for how long it holds; say interval_s in a map");
-}
-
-/// Whether a row is a reading or a change, and how far readings are apart.
-void LogFile::find_cadence() {
-  LogTimer timer = timer_;
-  std::vector<std::int64_t> apart;
-  std::optional<std::int64_t> last;
-  std::size_t n_rows = 0, n_changed = 0;
-  std::vector<std::string> before;
-  for (const HeadLine& line : head_) {
-    if (!split_fields(line.text, shape_.separator, fields_, unquoted_) || fields_.size() < shape_.names.size())
-      continue;
-    const auto us = timer.read(fields_).us;
-    if (!us) continue;
-    if (last && *us > *last) apart.push_back(*us - *last);
-    last = us;
-    std::vector<std::string> now;
-    for (const std::size_t column : shape_.sensors) now.emplace_back(fields_[column]);
-    n_changed += now != before ? 1 : 0;
-    ++n_rows;
-    before = std::move(now);
-  }
-  const LogMap& map = reading_.map;
-  const std::int64_t median = apart.empty() ? 0 : quantile(apart, 0.5);
-  const std::int64_t slow = apart.empty() ? 0 : quantile(apart, 0.95);
-  // Assumed: rows of changes come when they like, and nearly each changes something.
-  const bool are_changes =
-      map.rows == LogMap::Rows::changes || (map.rows == LogMap::Rows::found && !map.interval_s && n_rows >= 8 &&
-                                            slow > 4 * median && 10 * n_changed >= 9 * n_rows);
-  if (are_changes) return;
-  ReadingTracks::Cadence cadence;
-  cadence.interval_us = map.interval_s ? std::llround(*map.interval_s * 1e6) : usual_step(apart, median);
-  if (cadence.interval_us <= 0) refuse_head();
-  // Stamps of whole seconds may be two intervals apart where none is lost.
-  const std::int64_t usual = map.interval_s ? cadence.interval_us : std::clamp(slow, median, 5 * median / 3);
-  cadence.longest_gap_us = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 3 * usual / 2;
-  std::vector<std::int32_t> unknown(values_.size(), log_state::unknown);
-  if (shape_.people) unknown.back() = log_state::unknown_count;
-  readings_.emplace(cadence, std::move(unknown));
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
@@ -184,6 +163,18 @@ void LogFile::read() {
     take(*line, lines_.where().line);
     if (observer_.read && reading_.n_rows % now_and_then == 0) observer_.read(reading_.n_rows);
   }
+  require_order();
+}
+
+/// A table whose rows often aren't later than those before them has another form.
+void LogFile::require_order() const {
+  if (reading_.map.rows != LogMap::Rows::found || n_disordered_ <= std::max<std::uint64_t>(1, n_rows_ / 100)) return;
+  const std::string kind = readings_ ? "readings" : "changes";
+  throw Error(ErrorCode::input, {path_, first_disordered_, 1},
+              with_maps(std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
+                            " are no later than the rows before them: they tell of several sensors, or clocks were put back",
+                        {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin", "rows: " + kind}) +
+                  ", which " + (readings_ ? "leaves them out" : "puts them in order"));
 }
 
 std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
@@ -233,16 +224,24 @@ void LogFile::take(std::string_view line, int number) {
   const auto us = time_of_row(number);
   if (!us) return;
   ++reading_.n_rows;
-  reading_.note_row(*us);
+  reading_.note_row(*us, path_, number);
   if (shape_.form == LogMap::Form::events) return take_event(*us, number);
   read_values(number);
+  const bool is_disordered = n_rows_ > 0 && (readings_ ? *us <= last_us_ : *us < last_us_);
+  if (is_disordered && n_disordered_++ == 0) first_disordered_ = number;
+  ++n_rows_;
+  if (is_disordered) last_values_.clear();  // what is as in the row above may still be a change
   readings_ ? take_readings(*us, number) : take_changes(*us, number);
+  if (is_disordered) last_values_.clear();
+  last_us_ = n_rows_ == 1 ? *us : std::max(last_us_, *us);
 }
 
 /// Of the sensors and people in this row.
 void LogFile::read_values(int line) {
+  const bool keeps_empty = shape_.empty == LogMap::Empty::unchanged;
   for (std::size_t i = 0; i < shape_.sensors.size(); ++i) {
     const std::string_view text = fields_[shape_.sensors[i]];
+    if (keeps_empty && is_empty_cell(text)) continue;
     const auto state = read_state(text);
     values_[i] = state.value_or(log_state::unknown);
     if (state) continue;
@@ -252,6 +251,7 @@ void LogFile::read_values(int line) {
   }
   if (!shape_.people) return;
   const std::string_view text = fields_[*shape_.people];
+  if (keeps_empty && is_empty_cell(text)) return;
   const auto count = read_count(text);
   values_.back() = count.value_or(log_state::unknown_count);
   if (!count) remark("count", line, [&] { return quoted(text) + " is no number of people: it counts as unknown"; });
@@ -299,11 +299,15 @@ void LogFile::take_changes(std::int64_t us, int line) {
   last_values_ = values_;
 }
 
-/// What is no state: of another kind of sensor, or a sensor's fault.
-void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, int line) {
+/// What is no state: of another kind of sensor, or a sensor's fault. From there on nothing is known.
+void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line) {
   ++track.n_other;
-  if (track.n_states <= track.n_other) return;
-  reading_.events.add(track, us, log_state::unknown);
+  if (track.n_states == 0 && track.events.size() == 2) {  // of many in a row, the first and the last tell all
+    track.events.back().us = us;
+    track.is_sorted = track.events.front().us <= us;
+  } else {
+    reading_.events.add(track, us, unknown);
+  }
   if (track.odd_text.empty()) {
     track.odd_at = {path_, line, 0};
     track.odd_text = fields_[shape_.state];
@@ -318,7 +322,8 @@ void LogFile::take_event(std::int64_t us, int line) {
     return fault("sensors", line, shape_.sensor,
                  [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
   const auto value = is_people ? read_count(text) : read_state(text);
-  if (!value) return take_odd_event(*track, us, line);
+  const std::int32_t unknown = is_people ? log_state::unknown_count : log_state::unknown;
+  if (!value) return take_odd_event(*track, us, unknown, line);
   ++track->n_states;
   if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value}) {
     const bool has_label = shape_.separator == ' ' && fields_.size() > n_read_fields_;
