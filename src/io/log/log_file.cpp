@@ -18,7 +18,8 @@ constexpr std::uint64_t most_faults = 1000;
 
 bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
 
-/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in them.
+/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in
+/// them.
 bool is_comment(std::string_view line) {
   if (!line.starts_with('#')) return false;
   constexpr std::string_view separators = ",;\t";
@@ -126,7 +127,7 @@ void LogFile::refuse_head() {
   for (const HeadLine& line : head_) take(line.text, line.line);
   if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
   throw Error(ErrorCode::input, {path_, head_.front().line, 1},
-              "one reading alone doesn't tell for how long it holds; say interval_s in a map");
+              with_maps("one reading alone doesn't tell for how long it holds", {"interval_s: 30", "rows: changes"}));
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
@@ -169,12 +170,14 @@ void LogFile::read() {
 /// A table whose rows often aren't later than those before them has another form.
 void LogFile::require_order() const {
   if (reading_.map.rows != LogMap::Rows::found || n_disordered_ <= std::max<std::uint64_t>(1, n_rows_ / 100)) return;
-  const std::string kind = readings_ ? "readings" : "changes";
-  throw Error(ErrorCode::input, {path_, first_disordered_, 1},
-              with_maps(std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
-                            " are no later than the rows before them: they tell of several sensors, or clocks were put back",
-                        {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin", "rows: " + kind}) +
-                  ", which " + (readings_ ? "leaves them out" : "puts them in order"));
+  throw Error(
+      ErrorCode::input, {path_, first_disordered_, 1},
+      with_maps(
+          std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
+              " are no later than rows before them: they tell of several sensors, or clocks were put back, or they "
+              "are to be left out",
+          {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin",
+           std::string("rows: ") + (readings_ ? "readings" : "changes")}));
 }
 
 std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
@@ -230,9 +233,13 @@ void LogFile::take(std::string_view line, int number) {
   const bool is_disordered = n_rows_ > 0 && (readings_ ? *us <= last_us_ : *us < last_us_);
   if (is_disordered && n_disordered_++ == 0) first_disordered_ = number;
   ++n_rows_;
-  if (is_disordered) last_values_.clear();  // what is as in the row above may still be a change
-  readings_ ? take_readings(*us, number) : take_changes(*us, number);
-  if (is_disordered) last_values_.clear();
+  if (readings_) {
+    take_readings(*us, number);
+  } else if (!is_disordered) {
+    take_changes(*us);
+  } else {
+    remark("backward", number, [] { return "the times step back here; rows up to the last time are left out"; });
+  }
   last_us_ = n_rows_ == 1 ? *us : std::max(last_us_, *us);
 }
 
@@ -286,15 +293,13 @@ void LogFile::take_readings(std::int64_t us, int line) {
     throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
 }
 
-void LogFile::take_changes(std::int64_t us, int line) {
+void LogFile::take_changes(std::int64_t us) {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!last_values_.empty() && last_values_[i] == values_[i]) continue;
     const bool is_people = i == shape_.sensors.size();
-    const std::string& name = shape_.names[is_people ? *shape_.people : shape_.sensors[i]];
-    EventTracks::Track& track = *reading_.events.track(name);
+    EventTracks::Track& track = *reading_.events.track(shape_.names[is_people ? *shape_.people : shape_.sensors[i]]);
     ++track.n_states;
-    if (!reading_.events.add(track, us, values_[i]))
-      remark("backward", line, [] { return "the times step back here; the rows are put in order"; });
+    reading_.events.add(track, us, values_[i]);
   }
   last_values_ = values_;
 }

@@ -67,7 +67,7 @@ class LogFile {
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(int line);
   void take_readings(std::int64_t us, int line);
-  void take_changes(std::int64_t us, int line);
+  void take_changes(std::int64_t us);
   void take_event(std::int64_t us, int line);
   void take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line);
   void read_values(int line);

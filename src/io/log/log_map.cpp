@@ -98,9 +98,8 @@ std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
 void check_sensors(YamlMap& map, const std::vector<LogMap::Sensor>& sensors) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const auto before = sensors.begin() + static_cast<std::ptrdiff_t>(i);
-    const bool is_first =
-        std::find_if(sensors.begin(), before, [&](const auto& other) { return other.in_log == sensors[i].in_log; }) ==
-        before;
+    const bool is_first = std::find_if(sensors.begin(), before,
+                                       [&](const auto& other) { return other.in_log == sensors[i].in_log; }) == before;
     if (is_first && !is_column_name(sensors[i].name)) continue;
     const Where where = map.child("sensors")->items()[i].where();
     if (!is_first) map.faults().error(where, "sensors: '" + sensors[i].in_log + "' is named twice");

@@ -52,12 +52,13 @@ class Steps {
     median_ = quantile(sorted, 0.5);
     tolerance_ = median_ / 10;
     if (are_seconds && median_ >= 5 * us_per_s) tolerance_ = std::max(tolerance_, us_per_s);
+    are_coarse_ = are_seconds && median_ <= 3 * us_per_s;
     is_fine_ = median_ > 3 * (are_minutes ? 60 * us_per_s : are_seconds ? us_per_s : 0);
     const auto is_usual = [&](std::int64_t step) { return std::abs(step - median_) <= tolerance_; };
     usual_ = share(static_cast<std::size_t>(std::ranges::count_if(apart_, is_usual)), apart_.size());
-    on_grid_ = share(
-        static_cast<std::size_t>(std::ranges::count_if(apart_, [&](auto step) { return is_on_grid(step); })),
-        apart_.size());
+    on_grid_ =
+        share(static_cast<std::size_t>(std::ranges::count_if(apart_, [&](auto step) { return is_on_grid(step); })),
+              apart_.size());
   }
   [[nodiscard]] bool empty() const { return apart_.empty(); }
   [[nodiscard]] std::int64_t median() const { return median_; }
@@ -78,7 +79,7 @@ class Steps {
     ReadingTracks::Cadence cadence;
     cadence.interval_us = usual_step(apart_, median_);
     // Stamps of whole seconds may be two intervals apart where none is lost.
-    cadence.longest_gap_us = 3 * std::clamp(slow_, median_, 5 * median_ / 3) / 2;
+    cadence.longest_gap_us = 3 * std::clamp(slow_, median_, are_coarse_ ? 5 * median_ / 3 : 5 * median_ / 4) / 2;
     return cadence;
   }
 
@@ -86,7 +87,8 @@ class Steps {
   std::vector<std::int64_t> apart_;
   std::int64_t median_ = 0, fast_ = 0, slow_ = 0, tolerance_ = 0;
   double usual_ = 0.0, on_grid_ = 0.0;
-  bool is_fine_ = false;  ///< stamps of whole seconds or minutes don't make such a median by themselves
+  bool are_coarse_ = false;  ///< stamps of whole seconds, for such steps
+  bool is_fine_ = false;     ///< stamps of whole seconds or minutes don't make such a median by themselves
 };
 
 }  // namespace
@@ -140,7 +142,7 @@ RowsProof proof_of_rows(std::span<const StateRow> rows) {
 }
 
 NamesProof proof_of_names(std::span<const NamedRow> rows) {
-  std::size_t n_own = 0, n_own_turns = 0, n_turns = 0, n_switches = 0, n_same_time = 0;
+  std::size_t n_own = 0, n_own_turns = 0, n_turns = 0, n_switches = 0, n_turns_at_switch = 0, n_same_time = 0;
   std::unordered_map<std::string_view, std::int32_t> last;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto [before, is_new] = last.try_emplace(rows[i].name, rows[i].state);
@@ -151,10 +153,12 @@ NamesProof proof_of_names(std::span<const NamedRow> rows) {
     const bool is_other = rows[i].name != rows[i - 1].name;
     n_turns += rows[i].state != rows[i - 1].state ? 1 : 0;
     n_switches += is_other ? 1 : 0;
+    n_turns_at_switch += is_other && rows[i].state != rows[i - 1].state ? 1 : 0;
     n_same_time += is_other && rows[i].us == rows[i - 1].us ? 1 : 0;
   }
   const std::size_t n = rows.empty() ? 0 : rows.size() - 1;
-  return {share(n_own_turns, n_own), share(n_turns, n), share(n_switches, n), share(n_same_time, n)};
+  return {share(n_own_turns, n_own), share(n_turns, n), share(n_switches, n), share(n_turns_at_switch, n_switches),
+          share(n_same_time, n)};
 }
 
 bool are_opposites(std::span<const StateRow> rows, std::size_t a, std::size_t b) {
@@ -172,28 +176,37 @@ bool are_opposites(std::span<const StateRow> rows, std::size_t a, std::size_t b)
 
 Cells cells_of(std::span<const StateRow> rows) {
   const std::size_t n_columns = rows.empty() ? 0 : rows.front().states.size();
-  std::size_t n_scattered = 0, n_known = 0, n_turns = 0;
+  const auto is_known = [](std::int32_t state) { return state != log_state::unknown; };
+  std::size_t n_partial = 0, n_single = 0;
+  for (const StateRow& row : rows) {
+    const auto n_known = static_cast<std::size_t>(std::ranges::count_if(row.states, is_known));
+    n_partial += n_known < n_columns ? 1 : 0;
+    n_single += n_known == 1 ? 1 : 0;
+  }
+  const bool tell_one = n_columns > 1 && n_partial > 1 && share(n_single, n_partial) >= most;
+  std::size_t n_scattered = 0, n_again = 0, n_turns = 0;
   for (std::size_t k = 0; k < n_columns; ++k) {
     std::size_t known = 0, begins = 0, turns = 0;
     std::int32_t last = log_state::unknown, before = log_state::unknown;
     for (const StateRow& row : rows) {
       const std::int32_t state = row.states[k];
-      if (state != log_state::unknown) {
-        ++known;
-        begins += before == log_state::unknown ? 1 : 0;
-        turns += last != log_state::unknown && last != state ? 1 : 0;
+      if (is_known(state)) {
+        begins += is_known(before) ? 0 : 1;
+        turns += known > 0 && last != state ? 1 : 0;
         last = state;
+        ++known;
       }
       before = state;
     }
-    const bool is_scattered = known >= 2 && 10 * known < 7 * rows.size() && 4 * begins >= known && begins >= 2;
-    if (!is_scattered) continue;
-    ++n_scattered;
-    n_known += known - 1;
+    // Known in stretches of few rows, between which it isn't; assumed.
+    const bool is_scattered = begins >= 2 && 10 * known < 7 * rows.size() && 4 * begins >= known;
+    if (known == 0 || (!is_scattered && !tell_one)) continue;
+    n_scattered += is_scattered ? 1 : 0;
+    n_again += known - 1;
     n_turns += turns;
   }
-  if (n_scattered == 0) return Cells::full;
-  return share(n_turns, n_known) >= nearly_all ? Cells::pivot : Cells::scattered;
+  if (n_again > 0 && share(n_turns, n_again) >= nearly_all) return Cells::pivot;
+  return n_scattered > 0 ? Cells::scattered : Cells::full;
 }
 
 }  // namespace pirsim::io

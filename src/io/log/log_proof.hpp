@@ -38,10 +38,11 @@ struct NamedRow {
   std::int32_t state = 0;
 };
 struct NamesProof {
-  double own_turns = 0.0;  ///< of rows whose name came before: the share with another state than there
-  double all_turns = 0.0;  ///< of rows: the share with another state than the row before, whatever its name
-  double switches = 0.0;   ///< of rows: the share with another name than the row before
-  double same_time = 0.0;  ///< of rows: the share with another name than the row before, but its time
+  double own_turns = 0.0;        ///< of rows whose name came before: the share with another state than there
+  double all_turns = 0.0;        ///< of rows: the share with another state than the row before, whatever its name
+  double switches = 0.0;         ///< of rows: the share with another name than the row before
+  double turns_at_switch = 0.0;  ///< of rows with another name than the row before: the share with another state
+  double same_time = 0.0;        ///< of rows: the share with another name than the row before, but its time
 };
 [[nodiscard]] NamesProof proof_of_names(std::span<const NamedRow> rows);
 
@@ -50,9 +51,9 @@ struct NamesProof {
 
 /// A table whose columns were joined by time: a cell is empty where its sensor didn't change.
 enum class Cells {
-  full,     ///< or empty for whole stretches
-  pivot,    ///< few are known, and those alternate
-  scattered ///< few are known, and tell not why
+  full,      ///< or empty for whole stretches
+  pivot,     ///< few are known, and those alternate
+  scattered  ///< few are known, and don't tell why
 };
 [[nodiscard]] Cells cells_of(std::span<const StateRow> rows);
 

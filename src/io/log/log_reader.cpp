@@ -205,17 +205,22 @@ void finish_events(Log& log, LogReading& reading) {
     if (!track.odd_text.empty()) {
       reading.remarks.add(
           "odd state", [&] { return track.odd_at; },
-          [&] { return "'" + track.odd_text + "' is no state of '" + track.in_log + "': it counts as unknown, until its next event"; });
+          [&] {
+            return "'" + track.odd_text + "' is no state of '" + track.in_log +
+                   "': it counts as unknown, until its next event";
+          });
     }
     log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
   }
   if (log.sensors.empty()) {
-    const std::vector<std::string> first(log.others.begin(),
-                                         log.others.begin() + std::ptrdiff_t(std::min<std::size_t>(12, log.others.size())));
-    throw Error(ErrorCode::input, where,
-                with_maps("no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called a "
-                          "door's or a switch's; it has events of " + joined(first, ", "),
-                          {"sensors: [" + quoted_yaml(log.others.front()) + "]"}));
+    const std::vector<std::string> first(
+        log.others.begin(), log.others.begin() + std::ptrdiff_t(std::min<std::size_t>(12, log.others.size())));
+    throw Error(
+        ErrorCode::input, where,
+        with_maps("no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called a "
+                  "door's or a switch's; it has events of " +
+                      joined(first, ", "),
+                  {"sensors: [" + quoted_yaml(log.others.front()) + "]"}));
   }
 }
 

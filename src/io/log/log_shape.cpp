@@ -117,7 +117,8 @@ class Finder {
     time_ = shape.time;
     are_words_ = shape.separator == ' ';
     LogTimer timer(shape.time, zone, 0.0);
-    for (const auto& row : table_.rows) times_.push_back(timer.read(std::vector<std::string_view>(row.begin(), row.end())).us);
+    for (const auto& row : table_.rows)
+      times_.push_back(timer.read(std::vector<std::string_view>(row.begin(), row.end())).us);
     const auto events = sensor_and_state();
     if (map_.form == LogMap::Form::events && !events)
       refuse("events need columns of sensors and their states; name them in a map: sensor and state");
@@ -329,8 +330,8 @@ class Finder {
   /// Rows that have the same value in `a` have the same in `b`.
   [[nodiscard]] bool tells(std::size_t a, std::size_t b) const {
     std::map<std::string_view, std::string_view> of;
-    return std::ranges::all_of(
-        table_.rows, [&](const auto& row) { return of.try_emplace(row[a], row[b]).first->second == row[b]; });
+    return std::ranges::all_of(table_.rows,
+                               [&](const auto& row) { return of.try_emplace(row[a], row[b]).first->second == row[b]; });
   }
   [[nodiscard]] bool is_left_open(std::size_t column) const {
     return says(column) == NameSays::nothing && !is_of(time_, column) && !is_bookkeeping(column);
@@ -425,8 +426,8 @@ class Finder {
   [[nodiscard]] Proof proof_of(const SensorAndState& pair) const {
     const std::size_t n = n_names(pair.sensor), n_rows = table_.rows.size();
     const bool has_names = is_text(pair.sensor);
-    const bool has_all =
-        table_.count(pair.sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
+    const bool has_all = table_.count(pair.sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
+    const bool are_states = is_state_like(pair.sensor);
     if (!has_all || known_states(pair.state).size() < 2) return Proof::none;
     const bool are_few = n_rows < 8;
     if (2 * n > n_rows && !are_few) return Proof::none;
@@ -442,9 +443,13 @@ class Finder {
     const NamesProof names = proof_of_names(rows);
     constexpr double nearly_all = 0.9, many = 0.3, some = 0.1;  // assumed, as in log_proof.cpp
     const bool own = names.own_turns >= nearly_all, all = names.all_turns >= nearly_all;
+    if (are_states) {  // another sensor's, one of which changes at a time; or numbers of sensors
+      const bool are_readings = proof_of_rows(state_rows({pair.sensor, pair.state})).are == RowsProof::Are::readings;
+      return !own || are_readings || (all && names.turns_at_switch == 0.0) ? Proof::none : Proof::open;
+    }
     if (own && !all) return Proof::given;
-    if (2 * n > n_rows) return is_state_like(pair.sensor) ? Proof::none : Proof::open;
-    if (!has_names) return own && !is_state_like(pair.sensor) ? Proof::open : Proof::none;
+    if (2 * n > n_rows) return Proof::open;
+    if (!has_names) return own ? Proof::open : Proof::none;
     if (names.same_time >= many) return Proof::given;
     if (proof_of_rows(merged).are == RowsProof::Are::readings) return Proof::none;
     return names.switches >= some ? Proof::given : Proof::open;
@@ -453,7 +458,7 @@ class Finder {
   [[nodiscard]] std::optional<SensorAndState> proven() const {
     std::vector<SensorAndState> given, open;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (!is_left_open(i) || (table_.header_line > 0 && is_state_like(i))) continue;
+      if (!is_left_open(i)) continue;
       for (const std::size_t state : states_beside(i)) {
         const Proof proof = proof_of({i, state});
         if (proof == Proof::given) given.push_back({i, state});
@@ -483,9 +488,15 @@ class Finder {
     const bool is_rare = 20 * n_odd <= table_.rows.size() && table_.count(column, is_quantity) == 0;
     return has_states(column) && (is_called_so || is_rare);
   }
+  /// In numbers: `people_detected` is on and off.
   [[nodiscard]] bool is_count(std::size_t column) const {
-    const auto is_number = [](const std::string& text) { return read_count(text).has_value(); };
-    return table_.count(column, is_number) == table_.rows.size();
+    return table_.count(column, [](const std::string& text) {
+      const bool is_word = !is_number(text) && read_state(text) != log_state::unknown;
+      return read_count(text).has_value() && !is_word;
+    }) == table_.rows.size();
+  }
+  [[nodiscard]] bool counts_people(std::size_t column) const {
+    return says(column) == NameSays::count && is_count(column);
   }
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
@@ -514,9 +525,10 @@ class Finder {
     std::vector<std::size_t> counts, presences, sensors;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       if (is_of(time_, i) || is_of_area(i) || is_mapped(i)) continue;
-      if (says(i) == NameSays::count && is_count(i)) {
+      if (counts_people(i)) {
         counts.push_back(i);
-      } else if (says(i) == NameSays::presence && looks_like_motion(i) && !is_bookkeeping(i)) {
+      } else if ((says(i) == NameSays::presence || says(i) == NameSays::count) && looks_like_motion(i) &&
+                 !is_bookkeeping(i)) {
         presences.push_back(i);
       } else if (looks_like_motion(i) && !is_bookkeeping(i)) {
         sensors.push_back(i);
@@ -537,19 +549,21 @@ class Finder {
     for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(named(sensor.in_log));
     if (!shape.sensors.empty()) return;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (is_of(time_, i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i)) continue;
-      // Beside those that are called so, devices of other kinds and flags that never change are none.
-      const bool may_be_flag = says(i) == NameSays::other_device ||
+      if (is_of(time_, i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i))
+        continue;
+      // Beside sure ones, devices of other kinds are none, nor are flags and numbers that never change.
+      const bool may_be_flag = says(i) == NameSays::other_device || says(i) == NameSays::sensor ||
                                (says(i) == NameSays::nothing && known_states(i).size() < 2);
-      if (is_told_by_count(i, shape) || (may_be_flag && has_named_states())) continue;
+      if (is_told_by_count(i, shape) || (may_be_flag && has_sure_sensors())) continue;
       shape.sensors.push_back(i);
     }
   }
-  [[nodiscard]] bool has_named_states() const {
+  [[nodiscard]] bool has_sure_sensors() const {
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       const bool is_called_so =
           says(i) == NameSays::motion || says(i) == NameSays::presence || says(i) == NameSays::state;
-      if (!is_of(time_, i) && is_called_so && has_states(i)) return true;
+      const bool is_sure = table_.header_line == 0 && is_state_like(i) && known_states(i).size() > 1;
+      if (!is_of(time_, i) && has_states(i) && (is_called_so || is_sure)) return true;
     }
     return false;
   }
@@ -632,9 +646,9 @@ class Finder {
       } else if (is_either && shape.empty == LogMap::Empty::unchanged) {
         shape.rows = LogMap::Rows::changes;
       } else if (is_either && !are_ours && shape.cadence.interval_us > 0) {
-        refuse_with("rows may be readings, each of the time before it, or changes that hold until the next: " +
-                        proof.why,
-                    {"rows: readings", "rows: changes"});
+        refuse_with(
+            "rows may be readings, each of the time before it, or changes that hold until the next: " + proof.why,
+            {"rows: readings", "rows: changes"});
       }
     }
     if (map_.interval_s) {

@@ -98,14 +98,14 @@ NameSays what_name_says(std::string_view name) {
       "unix_time", "created_at", "received", "utc",       "local_time", "time_ms",    "seconds",      "epoch_s"};
   constexpr std::array sensors{"entity_id", "entity", "sensor", "sensor_id", "sensorid", "device", "sensor_name",
                                "device_id", "name",   "id",     "object_id", "node",     "topic",  "friendly_name"};
-  constexpr std::array states{"state",   "value",     "message", "status", "event",
+  constexpr std::array states{"state",   "value",     "message", "status",  "event",
                               "reading", "new_state", "_value",  "payload", "val"};
   constexpr std::array motions{"pir", "motion", "movement"};
   constexpr std::array counts{"people", "persons", "occupants", "headcount"};
   constexpr std::array presences{"occupancy", "occupied", "presence"};
-  constexpr std::array quantities{"light", "lux",  "illumin", "temp",  "sound",    "noise", "co2",   "humid",
-                                  "slope", "volt", "batt",    "power", "pressure", "rssi",  "energy",
-                                  "linkquality", "lqi"};
+  constexpr std::array quantities{"light",    "lux",   "illumin", "temp",        "sound", "noise",
+                                  "co2",      "humid", "slope",   "volt",        "batt",  "power",
+                                  "pressure", "rssi",  "energy",  "linkquality", "lqi"};
   constexpr std::array devices{"door", "window", "switch", "lock", "hvac", "contact", "tamper"};
   const std::string word = small(name);
   if (is_one_of(times, word)) return NameSays::time;

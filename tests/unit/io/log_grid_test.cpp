@@ -52,12 +52,13 @@ struct Truth {
 enum class Form { readings, changes, pivot, events, without_header, with_flags, one_dump, casas };
 constexpr std::array all_forms{Form::readings,       Form::changes,    Form::pivot,    Form::events,
                                Form::without_header, Form::with_flags, Form::one_dump, Form::casas};
-constexpr std::array form_names{"readings", "changes", "pivot", "events", "without header", "with flags", "one sensor's dump", "CASAS"};
+constexpr std::array form_names{"readings",   "changes",           "pivot", "events", "without header",
+                                "with flags", "one sensor's dump", "CASAS"};
 
 struct Case {
   Form form;
   double hold_s, pause_s;
-  bool has_gap, has_count, is_in_ms;
+  bool has_gap, has_count, is_in_ms, loses_rows;
   std::size_t n_rows, n_sensors, time_at;
   Texts names;
   std::int64_t interval;  ///< of readings
@@ -66,11 +67,14 @@ struct Case {
 Truth truth_of(const Case& one, Dice& dice) {
   Truth truth;
   const std::int64_t grain = one.is_in_ms ? 1 : s;
-  const auto rounded = [&](double seconds) { return std::max<std::int64_t>(1, std::llround(seconds * 1e3 / static_cast<double>(grain))) * grain; };
+  const auto rounded = [&](double seconds) {
+    return std::max<std::int64_t>(1, std::llround(seconds * 1e3 / static_cast<double>(grain))) * grain;
+  };
   const bool are_readings = one.form == Form::readings;
   const double cycle_s = one.pause_s + std::max(one.hold_s, 5.0);
-  truth.end = are_readings ? static_cast<std::int64_t>(one.n_rows) * one.interval
-                           : rounded(cycle_s * static_cast<double>(one.n_rows) / (2.0 * static_cast<double>(one.n_sensors)));
+  truth.end = are_readings
+                  ? static_cast<std::int64_t>(one.n_rows) * one.interval
+                  : rounded(cycle_s * static_cast<double>(one.n_rows) / (2.0 * static_cast<double>(one.n_sensors)));
   if (one.has_gap) {
     truth.lost_from = truth.end / 2 / one.interval * one.interval;
     truth.lost_to = truth.lost_from + 3600 * s;
@@ -78,7 +82,8 @@ Truth truth_of(const Case& one, Dice& dice) {
   }
   for (std::size_t i = 0; i < one.n_sensors; ++i) {
     std::vector<Pulse>& pulses = truth.sensors.emplace_back();
-    for (std::int64_t at = rounded(dice.after(one.pause_s));; at = pulses.back().off + rounded(dice.after(one.pause_s))) {
+    for (std::int64_t at = rounded(dice.after(one.pause_s));;
+         at = pulses.back().off + rounded(dice.after(one.pause_s))) {
       double length = one.hold_s > 0.0 ? one.hold_s : 1.0 + dice.after(8.0);
       while (one.hold_s > 0.0 && dice.below(3) == 0) length += one.hold_s * static_cast<double>(dice.below(1000)) / 1e3;
       const Pulse pulse{at, at + rounded(length)};
@@ -147,7 +152,8 @@ std::string text_of(const Case& one, const Truth& truth, Dice& dice) {
     if (one.has_count) names.push_back("people");
     text = line_of(one, time_name, names);
     for (std::int64_t at = one.interval; at <= truth.end; at += one.interval) {
-      if (truth.is_lost(at - one.interval, at)) continue;
+      if (truth.is_lost(at - one.interval, at) || (one.loses_rows && at > 2 * one.interval && dice.below(20) == 0))
+        continue;
       Texts cells;
       for (std::size_t i = 0; i < n; ++i) cells.push_back(words[truth.is_on(i, at - one.interval, at) ? 1 : 0]);
       if (one.has_count) cells.push_back(count_at(at));
@@ -176,18 +182,22 @@ std::string text_of(const Case& one, const Truth& truth, Dice& dice) {
   const bool has_tail = dice.below(2) == 0;
   if (one.form == Form::events) text = line_of(one, time_name, {sensor_name, state_name});
   if (one.form == Form::with_flags)
-    text = line_of(one, time_name, has_tail ? Texts{sensor_name, state_name, "battery_low", "tamper"} : Texts{sensor_name, state_name, "ack", "q"});
+    text = line_of(one, time_name,
+                   has_tail ? Texts{sensor_name, state_name, "battery_low", "tamper"}
+                            : Texts{sensor_name, state_name, "ack", "q"});
   if (one.form == Form::one_dump) text = line_of(one, time_name, {state_name});
   for (const Change& change : changes) {
     const std::string& name = one.names[change.sensor];
     if (one.form == Form::casas) {
       std::string time = stamp(change.at, 0);
-      text += time + " M00" + std::to_string(change.sensor + 1) + ' ' + change.state + (change.at % 7 == 0 ? " Sleep begin\n" : "\n");
+      text += time + " M00" + std::to_string(change.sensor + 1) + ' ' + change.state +
+              (change.at % 7 == 0 ? " Sleep begin\n" : "\n");
     } else if (one.form == Form::one_dump) {
       text += line_of(one, stamp(change.at, how), {change.state});
     } else if (one.form == Form::with_flags) {
       const std::string flag = change.at / (900 * s) % 5 == 4 ? words[1] : words[0];
-      text += line_of(one, stamp(change.at, how), has_tail ? Texts{name, change.state, flag, words[0]} : Texts{name, change.state, "true", "0"});
+      text += line_of(one, stamp(change.at, how),
+                      has_tail ? Texts{name, change.state, flag, words[0]} : Texts{name, change.state, "true", "0"});
     } else if (one.form == Form::without_header) {
       text += stamp(change.at, how) + ',' + name + ',' + change.state + '\n';
     } else {
@@ -207,24 +217,27 @@ Case case_of(Dice& dice) {
   one.has_gap = dice.below(3) == 0;
   one.has_count = dice.below(3) == 0;
   one.is_in_ms = dice.below(2) == 0;
+  one.loses_rows = dice.below(4) == 0;
   const std::array<std::size_t, 8> lengths{5, 6, 8, 12, 30, 100, 400, 2000};
   one.n_rows = dice.one_of(lengths);
   one.n_sensors = one.form == Form::one_dump ? 1 : 1 + dice.below(3);
   if (one.form == Form::pivot) one.n_sensors = std::max<std::size_t>(2, one.n_sensors);
-  const std::array<Texts, 9> names{Texts{"hall_motion", "desk_motion", "wc_motion"},
-                                   Texts{"hall_occupancy", "desk_occupancy", "wc_occupancy"},
-                                   Texts{"hall_presence", "desk_presence", "wc_presence"},
-                                   Texts{"PIR1", "PIR2", "PIR3"},
-                                   Texts{"S6_PIR", "S7_PIR", "S8_PIR"},
-                                   Texts{"hall_door", "front_door", "wc_door"},
-                                   Texts{"0x00158d0001a2", "0x00158d0001a3", "0x00158d0001a4"},
-                                   Texts{"hall", "desk", "wc"},
-                                   Texts{"3", "7", "12"}};
+  const std::array<Texts, 10> names{Texts{"hall_motion", "desk_motion", "wc_motion"},
+                                    Texts{"hall_occupancy", "desk_occupancy", "wc_occupancy"},
+                                    Texts{"hall_presence", "desk_presence", "wc_presence"},
+                                    Texts{"PIR1", "PIR2", "PIR3"},
+                                    Texts{"S6_PIR", "S7_PIR", "S8_PIR"},
+                                    Texts{"hall_door_pir", "front_door_pir", "wc_door_pir"},
+                                    Texts{"0x00158d0001a2", "0x00158d0001a3", "0x00158d0001a4"},
+                                    Texts{"hall", "desk", "wc"},
+                                    Texts{"3", "7", "12"},
+                                    Texts{"0", "1", "2"}};
   one.names = dice.one_of(names);
   one.names.resize(one.n_sensors);
   one.time_at = dice.below(4);
   const std::array<std::int64_t, 5> intervals{1 * s, 5 * s, 10 * s, 30 * s, 60 * s};
   one.interval = dice.one_of(intervals);
+  one.loses_rows = one.loses_rows && one.interval >= 5 * s;  // stamps of whole seconds hide a lost second
   return one;
 }
 
@@ -232,7 +245,8 @@ Case case_of(Dice& dice) {
 std::string compared(const Case& one, const Truth& truth, const Log& log) {
   const std::int64_t window = one.form == Form::readings ? one.interval : 10 * s;
   if (log.sensors.size() != one.n_sensors) return std::to_string(log.sensors.size()) + " sensors";
-  const bool counts = one.has_count && (one.form == Form::readings || one.form == Form::changes || one.form == Form::pivot);
+  const bool counts =
+      one.has_count && (one.form == Form::readings || one.form == Form::changes || one.form == Form::pivot);
   if (log.people.has_value() != counts) return "people";
   const LogRows rows = LogWindows(log, static_cast<double>(window) / 1e3).rows();
   std::size_t n_wrong = 0, n_unknown = 0, n_all = 0;
@@ -251,7 +265,8 @@ std::string compared(const Case& one, const Truth& truth, const Log& log) {
     }
   }
   if (n_wrong > 0) return std::to_string(n_wrong) + " wrong windows of " + std::to_string(n_all);
-  if (20 * n_unknown > n_all + 60) return std::to_string(n_unknown) + " unknown windows of " + std::to_string(n_all);
+  if (20 * n_unknown > (one.loses_rows ? 4 : 1) * n_all + 60)
+    return std::to_string(n_unknown) + " unknown windows of " + std::to_string(n_all);
   return {};
 }
 
@@ -279,7 +294,9 @@ TEST_CASE("a grid of made logs: each is read rightly, or refused with a map that
       ++n_refused;
       fault = std::string(error.what()).find("{pirsim_log: 1, ") == std::string::npos ? error.what() : "";
     }
-    INFO("log " << i << " (" << form_names[static_cast<std::size_t>(one.form)] << ", hold " << one.hold_s << " s, pause " << one.pause_s << " s): " << fault << "\n" << text.substr(0, 1500));
+    INFO("log " << i << " (" << form_names[static_cast<std::size_t>(one.form)] << ", hold " << one.hold_s
+                << " s, pause " << one.pause_s << " s): " << fault << "\n"
+                << text.substr(0, 1500));
     CHECK(fault.empty());
   }
   std::string table;
