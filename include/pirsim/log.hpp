@@ -33,9 +33,15 @@ struct LogMap {
   };
   enum class Dates { found, month_first, day_first };  ///< of 12/01/2017
   enum class Stamps { end, begin };                    ///< which end of a reading its time stamp tells
+  enum class Empty {
+    found,
+    unknown,   ///< an empty cell tells that the state isn't known
+    unchanged  ///< of rows of changes: it didn't change, as in series that were joined by time
+  };
   enum class People {
-    count,    ///< how many are there
-    presence  ///< 1 if anybody is
+    count,     ///< how many are there
+    presence,  ///< 1 if anybody is
+    none       ///< the log doesn't tell
   };
   /// Of all sensors, or else of some, by their names in the scene or in the log.
   struct Seconds {
@@ -51,6 +57,7 @@ struct LogMap {
 
   Form form = Form::found;
   Rows rows = Rows::found;
+  Empty empty = Empty::found;     ///< of a wide log: what an empty cell means
   std::vector<std::string> time;  ///< a column, or those of date and time; empty: found. Of intervals their begin
   std::vector<std::string> end;   ///< of intervals, as `time`
   std::string sensor_column;      ///< of events and intervals

@@ -68,7 +68,7 @@ nb::dict read(const std::vector<std::string>& files, const std::string& map_file
   nb::dict result = times(LogWindows(log, window_s));
   result["sensors"] = nb::tuple(to_python(rows.sensors));
   result["motion"] = to_numpy(std::move(rows.motion), {n, n_sensors});
-  result["people_means"] = rows.people_mean == LogMap::People::count ? "count" : "presence";
+  result["people_means"] = rows.people_mean == LogMap::People::presence ? "presence" : "count";
   result["people"] = log.people ? to_numpy(std::move(rows.people), {n}) : nb::none();
   result["window_s"] = rows.window_s;
   result["clock"] = nb::str(log.clock == LogClock::elapsed ? "elapsed"

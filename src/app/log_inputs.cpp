@@ -1,7 +1,11 @@
 #include "app/log_inputs.hpp"
 
+#include <iostream>
+
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "io/files/input.hpp"
+#include "io/pages/log_text.hpp"
 
 namespace pirsim::app {
 
@@ -37,6 +41,8 @@ Log read_log(const LogInputs& inputs, Verbosity verbosity) {
                            "written; name the room's zone (--time-zone Europe/Berlin)"});
   }
   tell(log.remarks, verbosity);
+  if (verbosity != Verbosity::quiet)
+    std::cerr << io::name_of_input(inputs.files.front()) << " is read as " << io::form_in_words(log) << '\n';
   return log;
 }
 

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/log/log_proof.hpp"
+#include "io/log/log_units.hpp"
 #include "io/log/log_words.hpp"
 #include "schema/limits.hpp"
 
@@ -14,8 +16,20 @@ namespace {
 constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
 constexpr std::uint64_t most_faults = 1000;
 
-bool has_no_data(std::string_view line) {
-  return line.find_first_not_of(" \t;,") == std::string_view::npos || line.starts_with('#');
+bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
+
+/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in
+/// them.
+bool is_comment(std::string_view line) {
+  if (!line.starts_with('#')) return false;
+  constexpr std::string_view separators = ",;\t";
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    const auto stamp = parse_stamp(line.substr(0, end), LogMap::Dates::found);
+    if (stamp && stamp->kind != Stamp::Kind::number) return false;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return true;
 }
 
 /// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
@@ -69,13 +83,17 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
     lines_.emplace(path);
   }
   read_head();
-  shape_ = shape_of(head_, map_of_head(), path_);
+  shape_ = shape_of(head_, map_of_head(), path_, reading.zone, reading.rows);
   timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
   if (shape_.end) end_timer_.emplace(*shape_.end, reading.zone, reading.map.shift_s);
   if (shape_.header_line > 0) head_.erase(head_.begin());
   n_read_fields_ = shape_.n_read_fields();
-  values_.resize(shape_.sensors.size() + (shape_.people ? 1 : 0));
-  if (shape_.form == LogMap::Form::wide) find_cadence();
+  values_.resize(shape_.sensors.size(), log_state::unknown);
+  if (shape_.people) values_.push_back(log_state::unknown_count);
+  reading.rows = shape_.rows;
+  if (shape_.rows != LogMap::Rows::readings) return;
+  if (shape_.cadence.interval_us <= 0) refuse_head();
+  readings_.emplace(shape_.cadence, values_);
 }
 
 std::optional<HeadLine> LogFile::next_line() {
@@ -95,7 +113,7 @@ void LogFile::read_head() {
     auto line = next_line();
     if (!line) break;
     bytes += line->text.size();
-    if (head_.empty() && is_before_table(line->text)) continue;
+    if (head_.empty() && (is_before_table(line->text) || is_comment(line->text))) continue;
     head_.push_back(std::move(*line));
   }
   if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
@@ -143,12 +161,39 @@ LogMap LogFile::map_of_head() const {
   return map;
 }
 
-void LogReading::note_row(std::int64_t us) {
+void LogReading::note_row(std::int64_t us, const std::string& path, int line) {
   first_us = std::min(first_us.value_or(us), us);
   last_us = std::max(last_us.value_or(us), us);
+  const std::int64_t month = us / (30 * us_per_day);
+  auto here = months.find(month);
+  if (here == months.end()) here = months.emplace(month, Month{us, us, {path, line, 1}}).first;
+  here->second.first_us = std::min(here->second.first_us, us);
+  here->second.last_us = std::max(here->second.last_us, us);
+  ++here->second.n_rows;
   if (!map.longest_gap_s) return;
   const auto [at, is_new] = busy.try_emplace(us / std::llround(*map.longest_gap_s * 1e6), Moments{us, us});
   at->second = {std::min(at->second.first_us, us), std::max(at->second.last_us, us)};
+}
+
+void LogReading::require_years() const {
+  constexpr std::int64_t longest_us = 366 * us_per_day;  // assumed: 200 to 400 days; who pauses for longer says so
+  const auto is_wanted = [&](const Month& month) {
+    return (!from_us || month.last_us >= *from_us) && (!to_us || month.first_us <= *to_us);
+  };
+  const std::int64_t allowed_us =
+      std::max(longest_us, map.longest_gap_s ? std::int64_t{std::llround(*map.longest_gap_s * 1e6)} : longest_us);
+  std::uint64_t n_before = 0;
+  for (auto at = months.begin(); at != months.end() && std::next(at) != months.end(); ++at) {
+    const Month &before = at->second, &after = std::next(at)->second;
+    n_before += before.n_rows;
+    if (after.first_us - before.last_us <= allowed_us || !is_wanted(before) || !is_wanted(after)) continue;
+    const bool is_late = 2 * n_before >= n_rows;
+    const auto moment = [](std::int64_t us) { return to_text({us, 0}, LogClock::local).substr(0, 10); };
+    throw Error(ErrorCode::input, is_late ? after.where : before.where,
+                "nothing is told from " + moment(before.last_us) + " to " + moment(after.first_us) +
+                    ": was the clock set here? If so, read the parts by themselves (from, to), or say longest_gap_s in "
+                    "a map");
+  }
 }
 
 std::vector<LogReading::Moments> LogReading::silences() const {
@@ -161,78 +206,13 @@ std::vector<LogReading::Moments> LogReading::silences() const {
   return found;
 }
 
-// ------------------------------------------------------------------------------------------------------------- cadence
-
-namespace {
-
-/// The value that this share of them doesn't exceed; reorders them.
-std::int64_t quantile(std::vector<std::int64_t>& values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
-/// The mean of those that are about the median: of seconds apart by 30 and 31.
-std::int64_t usual_step(const std::vector<std::int64_t>& apart, std::int64_t median) {
-  std::int64_t sum = 0, n = 0;
-  for (const std::int64_t step : apart) {
-    if (2 * step < median || step > 3 * median / 2) continue;
-    sum += step;
-    ++n;
-  }
-  constexpr std::int64_t ms = 1'000;
-  const std::int64_t mean = n > 0 ? sum / n : median;
-  return mean < 10 * ms ? mean : (mean + ms / 2) / ms * ms;
-}
-
-}  // namespace
-
 /// No two rows have different times.
 void LogFile::refuse_head() {
   readings_.emplace(ReadingTracks::Cadence{1, 1}, values_);
   for (const HeadLine& line : head_) take(line.text, line.line);
   if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
   throw Error(ErrorCode::input, {path_, head_.front().line, 1},
-              "one reading alone doesn't tell for how long it holds; say interval_s in a map");
-}
-
-/// Whether a row is a reading or a change, and how far readings are apart.
-void LogFile::find_cadence() {
-  LogTimer timer = timer_;
-  std::vector<std::int64_t> apart;
-  std::optional<std::int64_t> last;
-  std::size_t n_rows = 0, n_changed = 0;
-  std::vector<std::string> before;
-  for (const HeadLine& line : head_) {
-    if (!split_fields(line.text, shape_.separator, fields_, unquoted_) || fields_.size() < shape_.names.size())
-      continue;
-    const auto us = timer.read(fields_).us;
-    if (!us) continue;
-    if (last && *us > *last) apart.push_back(*us - *last);
-    last = us;
-    std::vector<std::string> now;
-    for (const std::size_t column : shape_.sensors) now.emplace_back(fields_[column]);
-    n_changed += now != before ? 1 : 0;
-    ++n_rows;
-    before = std::move(now);
-  }
-  const LogMap& map = reading_.map;
-  const std::int64_t median = apart.empty() ? 0 : quantile(apart, 0.5);
-  const std::int64_t slow = apart.empty() ? 0 : quantile(apart, 0.95);
-  // Assumed: rows of changes come when they like, and nearly each changes something.
-  const bool are_changes =
-      map.rows == LogMap::Rows::changes || (map.rows == LogMap::Rows::found && !map.interval_s && n_rows >= 8 &&
-                                            slow > 4 * median && 10 * n_changed >= 9 * n_rows);
-  if (are_changes) return;
-  ReadingTracks::Cadence cadence;
-  cadence.interval_us = map.interval_s ? std::llround(*map.interval_s * 1e6) : usual_step(apart, median);
-  if (cadence.interval_us <= 0) refuse_head();
-  // Stamps of whole seconds may be two intervals apart where none is lost.
-  const std::int64_t usual = map.interval_s ? cadence.interval_us : std::clamp(slow, median, 5 * median / 3);
-  cadence.longest_gap_us = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 3 * usual / 2;
-  std::vector<std::int32_t> unknown(values_.size(), log_state::unknown);
-  if (shape_.people) unknown.back() = log_state::unknown_count;
-  readings_.emplace(cadence, std::move(unknown));
+              with_maps("one reading alone doesn't tell for how long it holds", {"interval_s: 30", "rows: changes"}));
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
@@ -282,6 +262,20 @@ void LogFile::read() {
     take(*line, lines_->where().line);
     tell();
   }
+  require_order();
+}
+
+/// A table whose rows often aren't later than those before them has another form.
+void LogFile::require_order() const {
+  if (reading_.map.rows != LogMap::Rows::found || n_disordered_ <= std::max<std::uint64_t>(1, n_rows_ / 100)) return;
+  throw Error(
+      ErrorCode::input, {path_, first_disordered_, 1},
+      with_maps(
+          std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
+              " are no later than rows before them: they tell of several sensors, or clocks were put back, or they "
+              "are to be left out",
+          {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin",
+           std::string("rows: ") + (readings_ ? "readings" : "changes")}));
 }
 
 std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
@@ -331,17 +325,29 @@ void LogFile::take(std::string_view line, int number) {
   const auto us = time_of_row(timer_, shape_.time, number);
   if (!us) return;
   ++reading_.n_rows;
-  reading_.note_row(*us);
+  reading_.note_row(*us, path_, number);
   if (shape_.form == LogMap::Form::events) return take_event(*us, number);
   if (shape_.form == LogMap::Form::intervals) return take_interval(*us, number);
   read_values(number);
-  readings_ ? take_readings(*us, number) : take_changes(*us, number);
+  const bool is_disordered = n_rows_ > 0 && (readings_ ? *us <= last_us_ : *us < last_us_);
+  if (is_disordered && n_disordered_++ == 0) first_disordered_ = number;
+  ++n_rows_;
+  if (readings_) {
+    take_readings(*us, number);
+  } else if (!is_disordered) {
+    take_changes(*us);
+  } else {
+    remark("backward", number, [] { return "the times step back here; rows up to the last time are left out"; });
+  }
+  last_us_ = n_rows_ == 1 ? *us : std::max(last_us_, *us);
 }
 
 /// Of the sensors and people in this row.
 void LogFile::read_values(int line) {
+  const bool keeps_empty = shape_.empty == LogMap::Empty::unchanged;
   for (std::size_t i = 0; i < shape_.sensors.size(); ++i) {
     const std::string_view text = fields_[shape_.sensors[i]];
+    if (keeps_empty && is_empty_cell(text)) continue;
     const auto state = read_state(text);
     values_[i] = state.value_or(log_state::unknown);
     if (state) continue;
@@ -351,6 +357,7 @@ void LogFile::read_values(int line) {
   }
   if (!shape_.people) return;
   const std::string_view text = fields_[*shape_.people];
+  if (keeps_empty && is_empty_cell(text)) return;
   const auto count = read_count(text);
   values_.back() = count.value_or(log_state::unknown_count);
   if (!count) remark("count", line, [&] { return quoted(text) + " is no number of people: it counts as unknown"; });
@@ -385,24 +392,26 @@ void LogFile::take_readings(std::int64_t us, int line) {
     throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
 }
 
-void LogFile::take_changes(std::int64_t us, int line) {
+void LogFile::take_changes(std::int64_t us) {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!last_values_.empty() && last_values_[i] == values_[i]) continue;
     const bool is_people = i == shape_.sensors.size();
-    const std::string& name = shape_.names[is_people ? *shape_.people : shape_.sensors[i]];
-    EventTracks::Track& track = *reading_.events.track(name);
+    EventTracks::Track& track = *reading_.events.track(shape_.names[is_people ? *shape_.people : shape_.sensors[i]]);
     ++track.n_states;
-    if (!reading_.events.add(track, us, values_[i]))
-      remark("backward", line, [] { return "the times step back here; the rows are put in order"; });
+    reading_.events.add(track, us, values_[i]);
   }
   last_values_ = values_;
 }
 
-/// What is no state: of another kind of sensor, or a sensor's fault.
-void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, int line) {
+/// What is no state: of another kind of sensor, or a sensor's fault. From there on nothing is known.
+void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line) {
   ++track.n_other;
-  if (track.n_states <= track.n_other) return;
-  reading_.events.add(track, us, log_state::unknown);
+  if (track.n_states == 0 && track.events.size() == 2) {  // of many in a row, the first and the last tell all
+    track.events.back().us = us;
+    track.is_sorted = track.events.front().us <= us;
+  } else {
+    reading_.events.add(track, us, unknown);
+  }
   if (track.odd_text.empty()) {
     track.odd_at = {path_, line, 0};
     track.odd_text = fields_[*shape_.state];
@@ -447,7 +456,8 @@ void LogFile::take_event(std::int64_t us, int line) {
   EventTracks::Track* track = track_of_row(line);
   if (track == nullptr) return;
   const auto value = is_people ? read_count(text) : read_state(text);
-  if (!value) return take_odd_event(*track, us, line);
+  const std::int32_t unknown = is_people ? log_state::unknown_count : log_state::unknown;
+  if (!value) return take_odd_event(*track, us, unknown, line);
   ++track->n_states;
   if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value}) {
     const bool has_label = shape_.separator == ' ' && fields_.size() > n_read_fields_;

@@ -23,17 +23,26 @@ namespace pirsim::io {
 struct LogReading {
   const LogMap& map;
   LogZone* zone;  ///< none: null
-  LogRemarks faults, remarks;
-  EventTracks events;
+  LogRemarks faults{}, remarks{};
+  EventTracks events{};
+  LogMap::Rows rows = LogMap::Rows::found;  ///< what those of the files so far are
   std::uint64_t n_rows = 0;
-  std::optional<std::int64_t> first_us, last_us;  ///< of all rows, whether or not they tell of a sensor
-  std::optional<std::int64_t> from_us, to_us;     ///< what is wanted of it
+  std::optional<std::int64_t> first_us{}, last_us{};  ///< of all rows, whether or not they tell of a sensor
+  std::optional<std::int64_t> from_us{}, to_us{};     ///< what is wanted of it
   struct Moments {
     std::int64_t first_us, last_us;
   };
-  std::map<std::int64_t, Moments> busy;  ///< of events, if silence tells: by times of the longest gap's length
+  std::map<std::int64_t, Moments> busy{};  ///< of events, if silence tells: by times of the longest gap's length
+  struct Month {
+    std::int64_t first_us, last_us;
+    Where where;  ///< of the first row that is read
+    std::uint64_t n_rows = 0;
+  };
+  std::map<std::int64_t, Month> months{};  ///< those in which there are rows: of 30 days
 
-  void note_row(std::int64_t us);
+  void note_row(std::int64_t us, const std::string& path, int line);
+  /// Throws Error(input) if nothing is told for a year: some clock wasn't set.
+  void require_years() const;
   /// Longer than the longest gap: when nothing at all was written.
   [[nodiscard]] std::vector<Moments> silences() const;
 };
@@ -63,17 +72,17 @@ class LogFile {
   void read_head();
   void read_text_head(TextLines::Writer writer);
   [[nodiscard]] LogMap map_of_head() const;
-  void find_cadence();
   [[noreturn]] void refuse_head();
+  void require_order() const;
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
   void take_readings(std::int64_t us, int line);
-  void take_changes(std::int64_t us, int line);
+  void take_changes(std::int64_t us);
   void take_event(std::int64_t us, int line);
   void take_interval(std::int64_t us, int line);
   [[nodiscard]] EventTracks::Track* track_of_row(int line);
   void require_few_events(int line) const;
-  void take_odd_event(EventTracks::Track& track, std::int64_t us, int line);
+  void take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line);
   void read_values(int line);
   void require_one_run(int line);
   template <typename Message>
@@ -97,6 +106,9 @@ class LogFile {
   std::vector<std::string_view> fields_;
   std::vector<std::string> unquoted_;
   std::vector<std::int32_t> values_, last_values_;  ///< of a wide row: sensors, then people
+  std::int64_t last_us_ = 0;                        ///< of a wide row
+  std::uint64_t n_rows_ = 0, n_disordered_ = 0;     ///< of a wide log: of them are not later than the row before
+  int first_disordered_ = 0;                        ///< its line
   std::vector<std::string> run_;                    ///< which of several runs is read
 };
 

@@ -4,10 +4,12 @@
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/log/log_words.hpp"
 #include "io/read/reader_parts.hpp"
 #include "io/read/yaml_map.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/log.hpp"
+#include "schema/columns.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -35,6 +37,10 @@ const Names<LogMap::Stamps>& stamps() {
 }
 const Names<LogMap::People>& meanings() {
   static const Names<LogMap::People> names{{"count", LogMap::People::count}, {"presence", LogMap::People::presence}};
+  return names;
+}
+const Names<LogMap::Empty>& meanings_of_empty() {
+  static const Names<LogMap::Empty> names{{"unknown", LogMap::Empty::unknown}, {"unchanged", LogMap::Empty::unchanged}};
   return names;
 }
 
@@ -108,20 +114,29 @@ std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
 void check_sensors(YamlMap& map, const std::vector<LogMap::Sensor>& sensors) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const auto before = sensors.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::find_if(sensors.begin(), before, [&](const auto& other) { return other.in_log == sensors[i].in_log; }) ==
-        before)
-      continue;
-    const std::vector<YamlNode> items = map.child("sensors")->items();
-    map.faults().error(items[i].where(), "sensors: '" + sensors[i].in_log + "' is named twice");
+    const bool is_first = std::find_if(sensors.begin(), before,
+                                       [&](const auto& other) { return other.in_log == sensors[i].in_log; }) == before;
+    if (is_first && !is_column_name(sensors[i].name)) continue;
+    const Where where = map.child("sensors")->items()[i].where();
+    if (!is_first) map.faults().error(where, "sensors: '" + sensors[i].in_log + "' is named twice");
+    if (is_column_name(sensors[i].name))
+      map.faults().error(where, "sensors: '" + sensors[i].name +
+                                    "' is the name of a column of rows: give the sensor another one, as {PIR1: " +
+                                    quoted_yaml(sensors[i].in_log) + "}");
   }
 }
 
-/// `people: Room_Occupancy_Count`, or with what it means.
+/// `people: Room_Occupancy_Count`, with what it means, or `people: none`.
 void read_people(YamlMap& map, LogMap& log) {
   const auto node = map.child("people");
   if (!node) return;
   if (!node->is_map()) {
-    log.people = node->text(map.faults(), "people");
+    log.people = node->is_null() ? "" : node->text(map.faults(), "people");
+    if (log.people.empty())
+      map.faults().error(node->where(), "people: expected a column, or `none` for a log without a count");
+    if (log.people != "none") return;
+    log.people.clear();
+    log.people_mean = LogMap::People::none;
     return;
   }
   YamlMap people(*node, map.faults(), "people");
@@ -137,6 +152,7 @@ LogMap map_from(const YamlNode& root) {
   LogMap log;
   log.form = map.choice("form", log.form, forms());
   log.rows = map.choice("rows", log.rows, kinds_of_rows());
+  log.empty = map.choice("empty", log.empty, meanings_of_empty());
   log.time = read_time(map, "time");
   log.end = read_time(map, "end");
   log.sensor_column = map.text("sensor");
@@ -167,20 +183,6 @@ LogMap read_log_map(const std::filesystem::path& file, std::span<const std::stri
 }
 LogMap parse_log_map(std::string_view text, const std::string& name) { return map_from(YamlNode::parse(text, name)); }
 
-namespace {
-
-/// A text that YAML takes for nothing else.
-std::string quoted_yaml(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
-}  // namespace
-
 std::string to_yaml(const LogMap& map) {
   std::ostringstream out;
   const auto line = [&](const char* key, const std::string& value) {
@@ -204,6 +206,7 @@ std::string to_yaml(const LogMap& map) {
   line("pirsim_log", "1");
   line("form", word(forms(), map.form));
   line("rows", word(kinds_of_rows(), map.rows));
+  line("empty", word(meanings_of_empty(), map.empty));
   time("time", map.time);
   time("end", map.end);
   text("sensor", map.sensor_column);
@@ -216,6 +219,7 @@ std::string to_yaml(const LogMap& map) {
     out << "  " << quoted_yaml(sensor.name) << ": " << quoted_yaml(sensor.in_log) << '\n';
   if (!map.people.empty())
     out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word(meanings(), map.people_mean) << "}\n";
+  if (map.people_mean == LogMap::People::none) line("people", "none");
   number("interval_s", map.interval_s);
   number("longest_gap_s", map.longest_gap_s);
   seconds("hold_s", map.hold_s);

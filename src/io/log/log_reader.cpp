@@ -8,8 +8,10 @@
 
 #include "core/text.hpp"
 #include "io/log/log_file.hpp"
+#include "io/log/log_proof.hpp"
 #include "io/log/log_words.hpp"
 #include "pirsim/log.hpp"
+#include "schema/columns.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -243,18 +245,24 @@ void finish_events(Log& log, LogReading& reading) {
     if (!track.odd_text.empty()) {
       reading.remarks.add(
           "odd state", [&] { return track.odd_at; },
-          [&] { return "'" + track.odd_text + "' is no state of '" + track.in_log + "': it counts as unknown"; });
+          [&] {
+            return "'" + track.odd_text + "' is no state of '" + track.in_log +
+                   "': it counts as unknown, until its next event";
+          });
     }
     log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
   }
   require_sensors(log, log.map.hold_s, "hold_s");
   require_sensors(log, log.map.longest_motion_s, "longest_motion_s");
   if (log.sensors.empty()) {
+    const std::vector<std::string> first(
+        log.others.begin(), log.others.begin() + std::ptrdiff_t(std::min<std::size_t>(12, log.others.size())));
     throw Error(
         ErrorCode::input, where,
-        "no motion sensor is in it: nothing is on and off, 0 and 1, or true and false; it has events of " +
-            joined(log.others.size() > 12 ? std::vector(log.others.begin(), log.others.begin() + 12) : log.others,
-                   ", "));
+        with_maps("no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called a "
+                  "door's or a switch's; it has events of " +
+                      joined(first, ", "),
+                  {"sensors: [" + quoted_yaml(log.others.front()) + "]"}));
   }
 }
 
@@ -276,12 +284,13 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
     if (shape.state) map.state_column = shape.names[*shape.state];
   } else {
     map.rows = log.has_readings() ? LogMap::Rows::readings : LogMap::Rows::changes;
+    map.empty = shape.empty;
   }
   if (log.has_readings() && !map.interval_s) map.interval_s = static_cast<double>(log.interval_us) / 1e6;
   map.sensors.clear();
   for (const LogTrack& track : log.sensors) map.sensors.push_back({track.name, track.in_log});
   if (log.people) map.people = log.people->in_log;
-  map.people_mean = shape.people_mean;
+  map.people_mean = log.people ? shape.people_mean : LogMap::People::none;
 }
 
 /// Rows of changes become events of columns, which are known.
@@ -320,6 +329,11 @@ void check_names(const Log& log) {
       throw Error(ErrorCode::input, where, "sensor '" + track.name + "': " + fault);
     if (!names.insert(track.name).second)
       throw Error(ErrorCode::input, where, "two sensors are called '" + track.name + "'");
+    if (is_column_name(track.name)) {
+      throw Error(ErrorCode::input, where,
+                  with_maps("sensor '" + track.name + "' has the name of a column of rows",
+                            {"sensors: {PIR1: " + quoted_yaml(track.in_log) + "}"}));
+    }
   }
 }
 
@@ -357,7 +371,7 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
   if (files.empty()) throw Error(ErrorCode::usage, "a log has at least one file");
   std::optional<LogZone> zone;
   if (!map.time_zone.empty()) zone.emplace(map.time_zone, Where{});
-  LogReading reading{map, zone ? &*zone : nullptr, {}, {}, {}, 0, {}, {}, {}, {}, {}};
+  LogReading reading{map, zone ? &*zone : nullptr};
   Log log;
   log.map = map;
   std::vector<std::unique_ptr<LogFile>> read;
@@ -375,6 +389,7 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     log.files.push_back(opened.file());
   }
   if (reading.faults.count() > 0) throw Error(ErrorCode::input, reading.faults.issues(Severity::error));
+  reading.require_years();
   LogFile& first = *read.front();
   log.clock = first.timer().clock();
   log.n_rows = reading.n_rows;

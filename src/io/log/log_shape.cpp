@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/text.hpp"
+#include "io/log/log_proof.hpp"
 #include "io/log/log_words.hpp"
 #include "schema/columns.hpp"
 #include "schema/limits.hpp"
@@ -45,10 +49,11 @@ bool is_of_kind(const std::string& text, Stamp::Kind kind, LogMap::Dates order) 
 
 bool is_number(const std::string& text) { return is_of_kind(text, Stamp::Kind::number, LogMap::Dates::found); }
 
-/// A first line of names has no time and no value in it.
+/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers.
 bool is_header(const std::vector<std::string>& fields) {
-  return std::ranges::none_of(
-      fields, [](const std::string& field) { return parse_stamp(field, LogMap::Dates::found).has_value(); });
+  const auto is_value = [](const std::string& field) { return parse_stamp(field, LogMap::Dates::found).has_value(); };
+  const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
+  return std::ranges::none_of(fields, is_value) || std::ranges::any_of(fields, is_time);
 }
 
 std::vector<std::string> fields_of(const HeadLine& line, char separator, const std::string& file) {
@@ -108,18 +113,24 @@ class Finder {
  public:
   Finder(const HeadTable& table, const LogMap& map, const std::string& file) : table_(table), map_(map), file_(file) {}
 
-  void find(LogShape& shape) {
+  void find(LogShape& shape, LogZone* zone, LogMap::Rows before) {
     if (find_intervals(shape)) return;
     find_time(shape.time, map_.time);
-    const auto events = map_.form == LogMap::Form::wide ? std::nullopt : sensor_and_state(shape.time);
+    time_ = shape.time;
+    are_words_ = shape.separator == ' ';
+    LogTimer timer(shape.time, zone, 0.0);
+    for (const auto& row : table_.rows)
+      times_.push_back(timer.read(std::vector<std::string_view>(row.begin(), row.end())).us);
+    const auto events = sensor_and_state();
     if (map_.form == LogMap::Form::events && !events)
       refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
-      shape.sensor = events->first;
-      shape.state = events->second;
+      shape.sensor = events->sensor;
+      shape.state = events->state;
     } else {
       find_wide(shape);
+      find_rows(shape, before);
     }
   }
 
@@ -189,6 +200,51 @@ class Finder {
     }
     return std::nullopt;
   }
+  [[nodiscard]] bool has_moments(std::size_t column) const {
+    const auto kind = kind_of(column);
+    return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local;
+  }
+  enum class NumberIs { no_time, in_order, called_so, since_1970, called_so_in_order };
+  /// What a column of numbers tells of being the time: its name, its size, and that it grows.
+  [[nodiscard]] NumberIs what_number_is(std::size_t column) const {
+    std::size_t n_back = 0, n_since_1970 = 0, n = 0;
+    double first = 0.0, last = 0.0;
+    for (const auto& row : table_.rows) {
+      const auto stamp = parse_stamp(row[column], LogMap::Dates::found);
+      if (!stamp || stamp->kind != Stamp::Kind::number) continue;
+      n_back += n > 0 && stamp->number < last ? 1 : 0;
+      last = stamp->number;
+      if (n++ == 0) first = last;
+      double s = last;
+      while (s > 1e11) s /= 1e3;
+      n_since_1970 += s >= 631'152'000.0 && s < 4'102'444'800.0 ? 1 : 0;  // from 1990 to 2099
+    }
+    const bool grows = 10 * n_back <= n && (last > first || n == 1);
+    if (says(column) == NameSays::time) return grows ? NumberIs::called_so_in_order : NumberIs::called_so;
+    if (n_since_1970 == n) return NumberIs::since_1970;
+    return grows && table_.header_line == 0 ? NumberIs::in_order : NumberIs::no_time;
+  }
+  [[nodiscard]] std::optional<std::size_t> number_of_time(const std::vector<std::size_t>& columns,
+                                                          const std::vector<std::optional<Stamp::Kind>>& kinds,
+                                                          bool is_told) const {
+    NumberIs best = NumberIs::no_time;
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (kinds[i] != Stamp::Kind::number) continue;
+      if (is_told) return columns[i];
+      const NumberIs is = what_number_is(columns[i]);
+      if (is > best) found.clear();
+      best = std::max(best, is);
+      if (is == best && is != NumberIs::no_time) found.push_back(columns[i]);
+    }
+    if (found.size() > 1 && best == NumberIs::in_order) {
+      std::vector<std::string> maps;
+      for (const std::size_t column : found) maps.push_back("time: " + quoted_yaml(table_.names[column]));
+      refuse(with_maps("several columns of numbers grow, and may be the time", maps) +
+             "; the columns and their first values: " + columns_in_words());
+    }
+    return found.empty() ? std::nullopt : std::optional(found.front());
+  }
   void find_time(TimeColumns& time, const std::vector<std::string>& told) const {
     std::vector<std::size_t> columns;
     for (const std::string& name : told) columns.push_back(named(name));
@@ -197,6 +253,10 @@ class Finder {
       for (std::size_t i = 0; i < table_.n_columns(); ++i) columns.push_back(i);
       std::ranges::stable_partition(columns, [&](std::size_t i) { return says(i) == NameSays::time; });
     }
+    // One that never changes isn't the time: when a sensor was bought.
+    const auto is_still = [&](std::size_t i) { return n_names(i) == 1; };
+    if (!is_told && !std::ranges::all_of(columns, [&](std::size_t i) { return is_still(i) || !has_moments(i); }))
+      std::erase_if(columns, [&](std::size_t i) { return is_still(i) && has_moments(i); });
     std::vector<std::optional<Stamp::Kind>> kinds;
     for (const std::size_t column : columns) kinds.push_back(kind_of(column));
     const auto first_of = [&](Stamp::Kind kind) -> std::optional<std::size_t> {
@@ -214,8 +274,7 @@ class Finder {
       time.kind = kind_of_pair(time);
       return;
     }
-    const auto number = first_of(Stamp::Kind::number);
-    if (number && (is_told || says(*number) == NameSays::time || (table_.header_line == 0 && *number == 0)))
+    if (const auto number = number_of_time(columns, kinds, is_told))
       return set_first(time, *number, Stamp::Kind::number);
     if (hour) return set_first(time, *hour, Stamp::Kind::time_of_day);
     refuse((is_told ? "no times can be read from '" + joined(told, "', '") + "'"
@@ -292,52 +351,190 @@ class Finder {
 
   // Events.
 
-  using SensorAndState = std::pair<std::size_t, std::size_t>;
-  [[nodiscard]] bool has_states(std::size_t column) const {
-    return table_.count(column, [](const std::string& text) {
-      const auto state = read_state(text);
-      return state && *state != log_state::unknown;
-    }) > 0;
+  struct SensorAndState {
+    std::size_t sensor, state;
+  };
+  [[nodiscard]] std::string in_map(const SensorAndState& pair) const {
+    return "form: events, sensor: " + quoted_yaml(table_.names[pair.sensor]) +
+           ", state: " + quoted_yaml(table_.names[pair.state]);
+  }
+  [[noreturn]] void refuse_with(const std::string& why, const std::vector<std::string>& maps) const {
+    refuse(with_maps(why, maps) + "; the columns and their first values: " + columns_in_words());
+  }
+  [[noreturn]] void refuse_pairs(const std::string& why, const std::vector<SensorAndState>& pairs) const {
+    std::vector<std::string> maps;
+    for (const SensorAndState& pair : pairs) maps.push_back(in_map(pair));
+    refuse_with(why, maps);
+  }
+
+  [[nodiscard]] bool has_states(std::size_t column) const { return !known_states(column).empty(); }
+  [[nodiscard]] std::set<std::int32_t> known_states(std::size_t column) const {
+    std::set<std::int32_t> states;
+    for (const auto& row : table_.rows) {
+      const auto state = read_state(row[column]);
+      if (state && *state != log_state::unknown) states.insert(*state);
+    }
+    return states;
   }
   [[nodiscard]] bool is_text(std::size_t column) const {
     return table_.is_mostly(
         column, [](const std::string& text) { return !text.empty() && !is_number(text) && !read_state(text); });
   }
-  [[nodiscard]] std::optional<SensorAndState> sensor_and_state(const TimeColumns& time) const {
+  [[nodiscard]] std::size_t n_names(std::size_t column) const {
+    std::set<std::string_view> names;
+    for (const auto& row : table_.rows) names.insert(row[column]);
+    return names.size();
+  }
+  /// Rows that have the same value in `a` have the same in `b`.
+  [[nodiscard]] bool tells(std::size_t a, std::size_t b) const {
+    std::map<std::string_view, std::string_view> of;
+    return std::ranges::all_of(table_.rows,
+                               [&](const auto& row) { return of.try_emplace(row[a], row[b]).first->second == row[b]; });
+  }
+  [[nodiscard]] bool is_left_open(std::size_t column) const {
+    return says(column) == NameSays::nothing && !is_of(time_, column) && !is_bookkeeping(column);
+  }
+
+  /// Columns that may hold the states of sensors that `sensor` names: called so; or called motion, or presence; or any.
+  [[nodiscard]] std::vector<std::size_t> states_beside(std::size_t sensor) const {
+    std::array<std::vector<std::size_t>, 3> by_rank;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (i == sensor || is_of(time_, i) || is_bookkeeping(i) || !has_states(i)) continue;
+      if (says(i) == NameSays::state) by_rank[0].push_back(i);
+      if (says(i) == NameSays::motion || says(i) == NameSays::presence) by_rank[1].push_back(i);
+      if (says(i) == NameSays::nothing && looks_like_motion(i)) by_rank[2].push_back(i);
+    }
+    for (std::vector<std::size_t>& columns : by_rank) {
+      if (columns.empty()) continue;
+      const auto is_constant = [&](std::size_t i) { return known_states(i).size() < 2; };
+      if (!std::ranges::all_of(columns, is_constant)) std::erase_if(columns, is_constant);
+      std::erase_if(columns, [&](std::size_t i) {  // another one's copy
+        return i != columns.front() && tells(i, columns.front()) && tells(columns.front(), i) &&
+               known_states(i).size() > 1;
+      });
+      return columns;
+    }
+    return {};
+  }
+  /// The one that names all others' things, too.
+  [[nodiscard]] std::optional<std::size_t> finest(const std::vector<std::size_t>& columns) const {
+    for (const std::size_t column : columns) {
+      if (std::ranges::all_of(columns, [&](std::size_t other) { return tells(column, other); })) return column;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<SensorAndState> sensor_and_state() const {
     if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
       if (map_.sensor_column.empty() || map_.state_column.empty())
         refuse("a map of events names both columns, sensor and state");
       return SensorAndState{named(map_.sensor_column), named(map_.state_column)};
     }
-    if (table_.header_line == 0) return behind(time);
-    std::optional<std::size_t> sensor, state;
-    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (is_of(time, i)) continue;
-      if (!sensor && says(i) == NameSays::sensor) sensor = i;
-      if (!state && says(i) == NameSays::state) state = i;
+    const auto is_column = [&](const LogMap::Sensor& sensor) {
+      return std::ranges::find(table_.names, sensor.in_log) != table_.names.end();
+    };
+    const bool names_columns = !map_.sensors.empty() && std::ranges::all_of(map_.sensors, is_column);
+    const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
+    if (map_.form == LogMap::Form::wide || (map_.form == LogMap::Form::found && is_told_wide)) return std::nullopt;
+    if (table_.header_line == 0) {
+      if (const auto found = behind()) return found;
     }
-    if (sensor && state) return SensorAndState{*sensor, *state};
-    return table_.n_columns() == 3 && !time.second ? of_three(time) : std::nullopt;
+    const auto found = called();
+    return found ? found : proven();
   }
   /// Without names: a sensor and its state follow the time.
-  [[nodiscard]] std::optional<SensorAndState> behind(const TimeColumns& time) const {
-    const std::size_t sensor = time.second.value_or(time.first) + 1;
+  [[nodiscard]] std::optional<SensorAndState> behind() const {
+    const std::size_t sensor = time_.second.value_or(time_.first) + 1;
     if (sensor + 1 >= table_.n_columns() || !is_text(sensor) || !has_states(sensor + 1)) return std::nullopt;
-    return SensorAndState{sensor, sensor + 1};
+    const auto is_casas = [](const std::string& text) { return is_casas_motion(text); };
+    const bool is_sentence =  // "hall motion detected"
+        are_words_ && known_states(sensor + 1).size() < 2 && table_.count(sensor, is_casas) == 0;
+    return is_sentence ? std::nullopt : std::optional(SensorAndState{sensor, sensor + 1});
   }
-  [[nodiscard]] std::optional<SensorAndState> of_three(const TimeColumns& time) const {
-    std::array<std::size_t, 2> rest{};
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (i != time.first) rest[n++] = i;
+  /// A column that is called as sensors' names are.
+  [[nodiscard]] std::optional<SensorAndState> called() const {
+    const std::size_t n = table_.rows.size();
+    std::vector<std::size_t> sensors;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      const bool is_number_of_row = n_names(i) == n && (n >= 8 || !is_text(i));
+      if (says(i) == NameSays::sensor && !is_of(time_, i) && !is_number_of_row) sensors.push_back(i);
     }
-    if (is_text(rest[0]) && has_states(rest[1])) return SensorAndState{rest[0], rest[1]};
-    if (is_text(rest[1]) && has_states(rest[0])) return SensorAndState{rest[1], rest[0]};
-    return std::nullopt;
+    const auto is_constant = [&](std::size_t i) { return n_names(i) == 1; };
+    if (!std::ranges::all_of(sensors, is_constant)) std::erase_if(sensors, is_constant);
+    if (sensors.empty()) return std::nullopt;
+    const std::size_t sensor = finest(sensors).value_or(sensors.front());
+    const std::vector<std::size_t> states = states_beside(sensor);
+    if (states.empty()) return std::nullopt;
+    const bool is_one_device = n_names(sensor) == 1 && says(states.front()) != NameSays::state;
+    if (is_one_device && map_.form != LogMap::Form::events) return std::nullopt;
+    if (!finest(sensors)) {
+      std::vector<SensorAndState> pairs;
+      for (const std::size_t i : sensors) pairs.push_back({i, states.front()});
+      refuse_pairs("several columns name sensors", pairs);
+    }
+    if (states.size() > 1) {
+      std::vector<SensorAndState> pairs;
+      for (const std::size_t i : states) pairs.push_back({sensor, i});
+      refuse_pairs("several columns hold states of each '" + table_.names[sensor] + "'", pairs);
+    }
+    return SensorAndState{sensor, states.front()};
+  }
+  enum class Proof { none, open, given };
+  /// Whether rows tell that `pair` are sensors and their states, though no name says so.
+  [[nodiscard]] Proof proof_of(const SensorAndState& pair) const {
+    const std::size_t n = n_names(pair.sensor), n_rows = table_.rows.size();
+    const bool has_names = is_text(pair.sensor);
+    const bool has_all = table_.count(pair.sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
+    const bool are_states = is_state_like(pair.sensor);
+    if (!has_all || known_states(pair.state).size() < 2) return Proof::none;
+    const bool are_few = n_rows < 8;
+    if (2 * n > n_rows && !are_few) return Proof::none;
+    const auto is_whole = [](const std::string& text) { return read_count(text).has_value(); };
+    if (!has_names && table_.count(pair.sensor, is_whole) < n_rows) return Proof::none;
+    std::vector<NamedRow> rows;
+    std::vector<StateRow> merged;
+    for (std::size_t i = 0; i < n_rows; ++i) {
+      if (!times_[i]) continue;
+      rows.push_back({*times_[i], table_.rows[i][pair.sensor], cell(i, pair.state)});
+      merged.push_back({*times_[i], {rows.back().state}});
+    }
+    const NamesProof names = proof_of_names(rows);
+    constexpr double nearly_all = 0.9, many = 0.3, some = 0.1;  // assumed, as in log_proof.cpp
+    const bool own = names.own_turns >= nearly_all, all = names.all_turns >= nearly_all;
+    if (are_states) {  // another sensor's, one of which changes at a time; or numbers of sensors
+      const bool are_readings = proof_of_rows(state_rows({pair.sensor, pair.state})).are == RowsProof::Are::readings;
+      return !own || are_readings || (all && names.turns_at_switch == 0.0) ? Proof::none : Proof::open;
+    }
+    if (own && !all) return Proof::given;
+    if (2 * n > n_rows) return Proof::open;
+    if (!has_names) return own ? Proof::open : Proof::none;
+    if (names.same_time >= many) return Proof::given;
+    if (proof_of_rows(merged).are == RowsProof::Are::readings) return Proof::none;
+    return names.switches >= some ? Proof::given : Proof::open;
+  }
+  /// Columns whose names and states prove each other.
+  [[nodiscard]] std::optional<SensorAndState> proven() const {
+    std::vector<SensorAndState> given, open;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (!is_left_open(i)) continue;
+      for (const std::size_t state : states_beside(i)) {
+        const Proof proof = proof_of({i, state});
+        if (proof == Proof::given) given.push_back({i, state});
+        if (proof == Proof::open) open.push_back({i, state});
+      }
+    }
+    if (given.size() == 1) return given.front();
+    if (given.size() > 1) refuse_pairs("several columns may name sensors, or hold their states", given);
+    if (open.empty()) return std::nullopt;
+    refuse_with("'" + table_.names[open.front().sensor] + "' may name sensors, whose events these are, or not",
+                {in_map(open.front()), "form: wide"});
   }
 
   // Wide logs.
 
+  [[nodiscard]] bool is_state_like(std::size_t column) const {
+    return has_states(column) && table_.count(column, [](const auto& text) { return !read_state(text); }) == 0;
+  }
   [[nodiscard]] bool looks_like_motion(std::size_t column) const {
     if (says(column) == NameSays::other_quantity) return false;
     const auto is_odd = [](const std::string& text) { return !read_state(text); };
@@ -349,9 +546,15 @@ class Finder {
     const bool is_rare = 20 * n_odd <= table_.rows.size() && table_.count(column, is_quantity) == 0;
     return has_states(column) && (is_called_so || is_rare);
   }
+  /// In numbers: `people_detected` is on and off.
   [[nodiscard]] bool is_count(std::size_t column) const {
-    const auto is_number = [](const std::string& text) { return read_count(text).has_value(); };
-    return table_.count(column, is_number) == table_.rows.size();
+    return table_.count(column, [](const std::string& text) {
+      const bool is_word = !is_number(text) && read_state(text) != log_state::unknown;
+      return read_count(text).has_value() && !is_word;
+    }) == table_.rows.size();
+  }
+  [[nodiscard]] bool counts_people(std::size_t column) const {
+    return says(column) == NameSays::count && is_count(column);
   }
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
@@ -362,42 +565,168 @@ class Finder {
   [[nodiscard]] bool is_of_area(std::size_t column) const {
     return owner_of(table_.names[column]) != Each::sensor && is_count(column);
   }
+  [[nodiscard]] bool is_mapped(std::size_t column) const {
+    return std::ranges::find(map_.sensors, table_.names[column], &LogMap::Sensor::in_log) != map_.sensors.end();
+  }
+  [[nodiscard]] std::string people_map(std::size_t column) const {
+    return "people: " + quoted_yaml(table_.names[column]);
+  }
+  /// Counts by their name. What is called presence is as well a sensor, so that only a map makes it the truth.
   void find_people(LogShape& shape) const {
     shape.people_mean = map_.people_mean;
+    if (map_.people_mean == LogMap::People::none) return;
     if (!map_.people.empty()) {
       shape.people = named(map_.people);
+      if (is_mapped(*shape.people)) refuse("'" + map_.people + "' can't be a sensor and the people");
       return;
     }
-    for (const NameSays wanted : {NameSays::count, NameSays::presence}) {
-      for (std::size_t i = 0; i < table_.n_columns() && !shape.people; ++i) {
-        if (is_of(shape.time, i) || says(i) != wanted || !is_count(i) || is_of_area(i)) continue;
-        shape.people = i;
-        if (wanted == NameSays::presence) shape.people_mean = LogMap::People::presence;
+    std::vector<std::size_t> counts, presences, sensors;
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (is_of(time_, i) || is_of_area(i) || is_mapped(i)) continue;
+      if (counts_people(i)) {
+        counts.push_back(i);
+      } else if ((says(i) == NameSays::presence || says(i) == NameSays::count) && looks_like_motion(i) &&
+                 !is_bookkeeping(i)) {
+        presences.push_back(i);
+      } else if (looks_like_motion(i) && !is_bookkeeping(i)) {
+        sensors.push_back(i);
       }
+    }
+    if (counts.size() > 1) {
+      refuse_with("'" + table_.names[counts[0]] + "' and '" + table_.names[counts[1]] + "' may both count the people",
+                  {people_map(counts[0]), people_map(counts[1]), "people: none"});
+    }
+    if (counts.size() == 1) shape.people = counts.front();
+    if (presences.size() == 1 && counts.empty() && !sensors.empty() && map_.sensors.empty()) {
+      const std::string name = quoted_yaml(table_.names[presences.front()]);
+      refuse_with("'" + table_.names[presences.front()] + "' may be a sensor, or tell whether anybody is there",
+                  {"people: none", "people: {column: " + name + ", means: presence}"});
     }
   }
   void find_sensors(LogShape& shape) const {
     for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(named(sensor.in_log));
     if (!shape.sensors.empty()) return;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (!is_of(shape.time, i) && i != shape.people && !is_bookkeeping(i) && looks_like_motion(i))
-        shape.sensors.push_back(i);
-    }
-    // "occupancy" alone is the sensor, beside sensors it is what they are to tell.
-    if (shape.sensors.empty() && shape.people && map_.people.empty() && shape.people_mean == LogMap::People::presence) {
-      shape.sensors.push_back(*std::exchange(shape.people, std::nullopt));
-      shape.people_mean = LogMap::People::count;
+      if (is_of(time_, i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i))
+        continue;
+      // Beside sure ones, devices of other kinds are none, nor are flags and numbers that never change.
+      const bool may_be_flag = says(i) == NameSays::other_device || says(i) == NameSays::sensor ||
+                               (says(i) == NameSays::nothing && known_states(i).size() < 2);
+      if (is_told_by_count(i, shape) || (may_be_flag && has_sure_sensors())) continue;
+      shape.sensors.push_back(i);
     }
   }
+  [[nodiscard]] bool has_sure_sensors() const {
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      const bool is_called_so =
+          says(i) == NameSays::motion || says(i) == NameSays::presence || says(i) == NameSays::state;
+      const bool is_sure = table_.header_line == 0 && is_state_like(i) && known_states(i).size() > 1;
+      if (!is_of(time_, i) && has_states(i) && (is_called_so || is_sure)) return true;
+    }
+    return false;
+  }
+  /// Whether anybody is there, beside how many.
+  [[nodiscard]] bool is_told_by_count(std::size_t column, const LogShape& shape) const {
+    const auto agrees = [&](const auto& row) {
+      const auto count = read_count(row[*shape.people]), state = read_state(row[column]);
+      return count && state && (*count > 0) == (*state == log_state::on);
+    };
+    return shape.people && says(column) == NameSays::presence && known_states(column).size() > 1 &&
+           std::ranges::all_of(table_.rows, agrees);
+  }
+  void require_no_opposites(const LogShape& shape) const {
+    constexpr std::size_t most = 20;  // assumed: of more, nobody tells each twice
+    if (!map_.sensors.empty() || shape.sensors.size() > most) return;
+    const std::vector<StateRow> rows = state_rows(shape.sensors);
+    for (std::size_t a = 0; a < shape.sensors.size(); ++a) {
+      for (std::size_t b = a + 1; b < shape.sensors.size(); ++b) {
+        if (!are_opposites(rows, a, b)) continue;
+        const std::string &one = table_.names[shape.sensors[a]], &other = table_.names[shape.sensors[b]];
+        refuse_with("'" + one + "' is always on when '" + other + "' is off: one of them is no sensor",
+                    {"sensors: [" + quoted_yaml(one) + "]", "sensors: [" + quoted_yaml(other) + "]"});
+      }
+    }
+  }
+
+  // Their rows.
+
+  /// What a cell says, and `not_told` where it says that the state isn't known, which an empty one doesn't.
+  static constexpr std::int32_t not_told = log_state::unknown + 1;
+  [[nodiscard]] std::int32_t cell(std::size_t row, std::size_t column) const {
+    const std::string& text = table_.rows[row][column];
+    if (is_empty_cell(text)) return log_state::unknown;
+    const auto state = read_state(text);
+    return state && *state != log_state::unknown ? *state : not_told;
+  }
+  [[nodiscard]] std::vector<StateRow> state_rows(const std::vector<std::size_t>& columns) const {
+    std::vector<StateRow> rows;
+    for (std::size_t i = 0; i < table_.rows.size(); ++i) {
+      if (!times_[i]) continue;
+      StateRow& row = rows.emplace_back(StateRow{*times_[i], {}});
+      for (const std::size_t column : columns) row.states.push_back(cell(i, column));
+    }
+    return rows;
+  }
+  /// What empty cells mean; where they mean no change, they are filled.
+  void find_empty(LogShape& shape, std::vector<StateRow>& rows) const {
+    shape.empty = map_.empty;
+    if (map_.empty == LogMap::Empty::found) {
+      const Cells cells = cells_of(rows);
+      if (cells == Cells::scattered) {
+        refuse_with("many cells are empty: their states may be unchanged, or unknown",
+                    {"empty: unchanged", "empty: unknown"});
+      }
+      shape.empty = cells == Cells::pivot ? LogMap::Empty::unchanged : LogMap::Empty::unknown;
+    }
+    if (shape.empty != LogMap::Empty::unchanged) return;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      for (std::size_t k = 0; k < rows[i].states.size(); ++k) {
+        if (rows[i].states[k] == log_state::unknown) rows[i].states[k] = rows[i - 1].states[k];
+      }
+    }
+  }
+  /// Whether rows are readings or changes. `before`: what they are in files that were read before, or found.
+  void find_rows(LogShape& shape, LogMap::Rows before) const {
+    std::vector<StateRow> rows = state_rows(shape.sensors);
+    find_empty(shape, rows);
+    for (std::size_t i = 0, row = 0; i < table_.rows.size() && shape.people; ++i) {
+      if (times_[i]) rows[row++].states.push_back(read_count(table_.rows[i][*shape.people]).value_or(not_told));
+    }
+    const RowsProof proof = proof_of_rows(rows);
+    shape.cadence = proof.usual;
+    shape.rows = map_.interval_s ? LogMap::Rows::readings : map_.rows;
+    if (shape.rows == LogMap::Rows::found) {
+      const bool is_either = proof.are == RowsProof::Are::either;
+      const bool are_ours = proof.are_in_step && table_.names[time_.first] == "time_s";
+      shape.rows = proof.are == RowsProof::Are::changes ? LogMap::Rows::changes : LogMap::Rows::readings;
+      if (before != LogMap::Rows::found && (is_either || rows.size() < 8)) {
+        shape.rows = before;
+      } else if (is_either && shape.empty == LogMap::Empty::unchanged) {
+        shape.rows = LogMap::Rows::changes;
+      } else if (is_either && !are_ours && shape.cadence.interval_us > 0) {
+        refuse_with(
+            "rows may be readings, each of the time before it, or changes that hold until the next: " + proof.why,
+            {"rows: readings", "rows: changes"});
+      }
+    }
+    if (map_.interval_s) {
+      shape.cadence.interval_us = std::llround(*map_.interval_s * 1e6);
+      shape.cadence.longest_gap_us = 3 * shape.cadence.interval_us / 2;
+    }
+    if (map_.longest_gap_s) shape.cadence.longest_gap_us = std::llround(*map_.longest_gap_s * 1e6);
+  }
   void find_wide(LogShape& shape) const {
-    if (table_.rows.empty()) refuse("there are names of columns, but no row");
     find_people(shape);
     find_sensors(shape);
-    if (shape.sensors.empty()) {
-      refuse(
-          "no column is a motion sensor's (0 and 1, on and off, true and false); the columns and their first values: " +
-          columns_in_words() + "; name the sensors in a map");
+    const bool are_of_sentence = table_.header_line == 0 && are_words_ && map_.sensors.empty();
+    if (shape.sensors.empty() || are_of_sentence) {
+      refuse((are_of_sentence ? "its lines are words, not a table with a column a sensor"
+                              : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
+             "; the columns and their first values: " + columns_in_words() +
+             "; name the sensors in a map, or the columns of events: " +
+             settling_map("form: events, sensor: COLUMN, state: COLUMN"));
     }
+    require_no_opposites(shape);
     const LogTimer timer(shape.time, nullptr, 0.0);
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       const std::string& name = table_.names[i];
@@ -413,6 +742,9 @@ class Finder {
   const HeadTable& table_;
   const LogMap& map_;
   const std::string& file_;
+  TimeColumns time_;
+  std::vector<std::optional<std::int64_t>> times_;  ///< of the rows
+  bool are_words_ = false;                          ///< cut at spaces
 };
 
 }  // namespace
@@ -424,7 +756,8 @@ std::size_t LogShape::n_read_fields() const {
   return last + 1;
 }
 
-LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file) {
+LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file, LogZone* zone,
+                  LogMap::Rows before) {
   LogShape shape;
   shape.separator = separator_of(head.front().text);
   const HeadTable table = table_of(head, shape.separator, file);
@@ -432,7 +765,7 @@ LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const st
     throw Error(ErrorCode::input, {file, table.header_line, 1}, "there are names of columns, but no row");
   shape.header_line = table.header_line;
   shape.names = table.names;
-  Finder(table, map, file).find(shape);
+  Finder(table, map, file).find(shape, zone, before);
   return shape;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/log/log_timer.hpp"
+#include "io/log/log_tracks.hpp"
 #include "pirsim/log.hpp"
 
 namespace pirsim::io {
@@ -31,6 +32,9 @@ struct LogShape {
   LogMap::People people_mean = LogMap::People::count;
   std::vector<std::size_t> runs;    ///< columns that tell runs apart, of rows that have no clock
   std::vector<std::string> others;  ///< columns that nothing is read from
+  LogMap::Rows rows = LogMap::Rows::found;
+  LogMap::Empty empty = LogMap::Empty::found;
+  ReadingTracks::Cadence cadence;  ///< of readings; an interval of 0: no two rows have different times
 
   // Of events and intervals.
   std::size_t sensor = 0;
@@ -44,7 +48,9 @@ struct LogShape {
   [[nodiscard]] std::size_t n_read_fields() const;
 };
 
-/// head: the first lines that are neither empty nor comments; one at least. Throws Error(input).
-[[nodiscard]] LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file);
+/// head: the first lines that are neither empty nor comments; one at least. zone: of local times, or null. before: what
+/// rows are in the log's files so far, or found. Throws Error(input), with the maps that settle it if two forms fit.
+[[nodiscard]] LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file,
+                                LogZone* zone, LogMap::Rows before);
 
 }  // namespace pirsim::io

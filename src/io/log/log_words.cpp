@@ -60,6 +60,13 @@ std::optional<std::int32_t> read_state(std::string_view text) {
   return std::nullopt;
 }
 
+bool is_empty_cell(std::string_view text) {
+  if (text.empty()) return true;
+  if (text.size() > longest_state) return false;
+  const std::string word = small(text);
+  return word.empty() || word == "nan" || word == "null" || word == "<na>";
+}
+
 std::optional<std::int32_t> read_count(std::string_view text) {
   constexpr double most = 1e6;  // assumed: a stadium has fewer
   if (text.size() > longest_state) return std::nullopt;
@@ -91,14 +98,15 @@ NameSays what_name_says(std::string_view name) {
       "unix_time", "created_at", "received", "utc",       "local_time", "time_ms",    "seconds",      "epoch_s"};
   constexpr std::array sensors{"entity_id", "entity", "sensor", "sensor_id", "sensorid", "device", "sensor_name",
                                "device_id", "name",   "id",     "object_id", "node",     "topic",  "friendly_name"};
-  constexpr std::array states{"state",   "value",     "message", "status", "event",
-                              "reading", "new_state", "_value",  "payload"};
+  constexpr std::array states{"state",   "value",     "message", "status",  "event",
+                              "reading", "new_state", "_value",  "payload", "val"};
   constexpr std::array motions{"pir", "motion", "movement"};
   constexpr std::array counts{"people", "persons", "occupants", "headcount"};
   constexpr std::array presences{"occupancy", "occupied", "presence"};
-  constexpr std::array quantities{"light", "lux",  "illumin", "temp",  "sound",    "noise", "co2",   "humid",
-                                  "slope", "volt", "batt",    "power", "pressure", "rssi",  "energy"};
-  constexpr std::array devices{"door", "window", "switch", "lock", "hvac"};
+  constexpr std::array quantities{"light",    "lux",   "illumin", "temp",        "sound", "noise",
+                                  "co2",      "humid", "slope",   "volt",        "batt",  "power",
+                                  "pressure", "rssi",  "energy",  "linkquality", "lqi"};
+  constexpr std::array devices{"door", "window", "switch", "lock", "hvac", "contact", "tamper"};
   const std::string word = small(name);
   if (is_one_of(times, word) || word.ends_with("_ts")) return NameSays::time;
   if (is_one_of(sensors, word)) return NameSays::sensor;
@@ -113,6 +121,15 @@ NameSays what_name_says(std::string_view name) {
   if (begins_with_one_of(words, quantities)) return NameSays::other_quantity;
   if (begins_with_one_of(words, devices)) return NameSays::other_device;
   return NameSays::nothing;
+}
+
+std::string quoted_yaml(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
 }
 
 bool is_casas_motion(std::string_view name) {

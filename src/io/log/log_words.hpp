@@ -13,6 +13,8 @@ namespace pirsim::io {
 
 /// log_state of "1", "0.0", "on", "False", "motion", "unavailable", ""; none for what is no state.
 [[nodiscard]] std::optional<std::int32_t> read_state(std::string_view text);
+/// "", "nan", "null": a table's cell in which nothing stands.
+[[nodiscard]] bool is_empty_cell(std::string_view text);
 /// A whole number from 0, also as "3.0"; log_state::unknown_count for what says that nobody knows; none for any other
 /// text.
 [[nodiscard]] std::optional<std::int32_t> read_count(std::string_view text);
@@ -25,5 +27,8 @@ enum class NameSays { nothing, time, sensor, state, motion, count, presence, oth
 [[nodiscard]] NameSays what_name_says(std::string_view name);
 /// "M003", "MA012": how CASAS calls motion sensors.
 [[nodiscard]] bool is_casas_motion(std::string_view name);
+
+/// A text that YAML takes for nothing else.
+[[nodiscard]] std::string quoted_yaml(const std::string& text);
 
 }  // namespace pirsim::io

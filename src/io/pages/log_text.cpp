@@ -44,11 +44,11 @@ std::string rate_in_words(const std::optional<LogFalseTriggers>& found) {
 }
 
 std::string people_in_words(const Log& log) {
-  if (!log.people) return {};
+  if (!log.people) return ", no counts";
   std::int32_t most = 0;
   for (const LogChange& change : log.people->changes) most = std::max(most, change.value);
   const bool is_count = log.map.people_mean == LogMap::People::count;
-  return "; people: " + log.people->in_log + (is_count ? ", up to " + std::to_string(most) : ", present or not");
+  return ", people: " + log.people->in_log + (is_count ? ", up to " + std::to_string(most) : ", present or not");
 }
 
 std::string names_in_words(const Log& log, const std::vector<std::size_t>& sensors) {
@@ -62,15 +62,20 @@ std::string names_in_words(const Log& log, const std::vector<std::size_t>& senso
 
 }  // namespace
 
-std::string log_in_words(const Log& log) {
+std::string form_in_words(const Log& log) {
   const double interval_s = static_cast<double>(log.interval_us) / 1e6;
   const std::string form = log.map.form == LogMap::Form::events      ? "events"
                            : log.map.form == LogMap::Form::intervals ? "intervals"
                            : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
                                                 : "rows of changes";
-  return form + (log.source.empty() ? "" : " of " + log.source) + ", " + moment_in_words(log, log.begin_us) + " to " +
-         moment_in_words(log, log.end_us) + " (" + time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) +
-         "), " + counted(log.n_rows, "row") + ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
+  const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
+  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
+}
+
+std::string log_in_words(const Log& log) {
+  return form_in_words(log) + "; " + moment_in_words(log, log.begin_us) + " to " + moment_in_words(log, log.end_us) +
+         " (" + time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) + "), " +
+         counted(log.n_rows, "row");
 }
 
 Table sensor_table(const Log& log, const LogFacts& facts) {

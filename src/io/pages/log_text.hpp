@@ -9,8 +9,10 @@
 
 namespace pirsim::io {
 
-/// "readings every 30 s, 2017-12-22T10:49:11 to ..., 10129 rows; people: Room_Occupancy_Count, 0 to 3"
+/// "readings every 30 s, 2 sensors, people: Room_Occupancy_Count, up to 3; 2017-12-22T10:49:11 to ..., 10129 rows"
 [[nodiscard]] std::string log_in_words(const Log& log);
+/// How it was read: "rows of changes, 2 sensors, no counts".
+[[nodiscard]] std::string form_in_words(const Log& log);
 
 /// A row a sensor: share of motion, pulses, pauses, false triggers.
 [[nodiscard]] Table sensor_table(const Log& log, const LogFacts& facts);

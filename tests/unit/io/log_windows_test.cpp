@@ -91,6 +91,7 @@ TEST_CASE("windows of readings are what their definition says") {
     }
     LogMap map;
     map.interval_s = interval;
+    map.empty = LogMap::Empty::unknown;
     map.sensors = {{"A", "A"}};
     const Log log = read_log_text(text, map);
     for (const int window : {1, 2, 5, 30, 7}) {
@@ -185,10 +186,15 @@ TEST_CASE("local times of a zone: an hour that there is twice, and one that ther
   CHECK(log.remarks[0].message.find("twice") != std::string::npos);
   CHECK(log.remarks[0].message.find("; 3 more like this") != std::string::npos);
   // The same as they are, without a zone: the second pass is out of order.
-  CHECK(windows_of(read_log_text(text), 1800.0) == Texts{"0000"});
+  CHECK_THROWS_WITH(read_log_text(text), contains("log.csv:5:1: error: 2 of 6 rows are no later than rows before"));
+  LogMap readings;
+  readings.rows = LogMap::Rows::readings;
+  CHECK(windows_of(read_log_text(text, readings), 1800.0) == Texts{"0000"});
 
+  LogMap told = map;
+  told.rows = LogMap::Rows::readings;
   const Log gap =
-      read_log_text("time,A\n2025-03-30 01:30,0\n2025-03-30 02:30,1\n2025-03-30 03:00,0\n2025-03-30 03:30,0\n", map);
+      read_log_text("time,A\n2025-03-30 01:30,0\n2025-03-30 02:30,1\n2025-03-30 03:00,0\n2025-03-30 03:30,0\n", told);
   REQUIRE(gap.remarks.size() >= 1);
   CHECK(gap.remarks[0].message.find("left out") != std::string::npos);
   LogMap wrong = map;
@@ -207,8 +213,10 @@ TEST_CASE("windows begin at the local midnight, also where zones are half an hou
 }
 
 TEST_CASE("offsets of the stamps alone tell local time") {
-  const Log log =
-      read_log_text("time,A\n2025-10-26T02:30:00+02:00,0\n2025-10-26T02:00:00+01:00,1\n2025-10-26T02:30:00+01:00,0\n");
+  LogMap map;
+  map.rows = LogMap::Rows::readings;
+  const Log log = read_log_text(
+      "time,A\n2025-10-26T02:30:00+02:00,0\n2025-10-26T02:00:00+01:00,1\n2025-10-26T02:30:00+01:00,0\n", map);
   CHECK(log.clock == LogClock::zoned);
   const LogRows rows = LogWindows(log, 1800.0).rows();
   CHECK(windows_of(log, 1800.0) == Texts{"010"});
