@@ -115,12 +115,15 @@ std::vector<NamedFile> asked_for(const std::vector<Files::List>& lists) {
 }  // namespace
 
 void Files::check() const {
-  const std::vector<NamedFile> inputs = asked_for(inputs_);
+  const std::vector<NamedFile> inputs = asked_for(inputs_), outputs = asked_for(outputs_);
   std::vector<NamedFile> before;
   std::error_code unknown;
-  for (const NamedFile& output : asked_for(outputs_)) {
+  for (const NamedFile& output : outputs) {
     check_ending(output);
-    check_place(output);
+    const bool is_in_another = std::ranges::any_of(outputs, [&](const NamedFile& folder) {
+      return &folder != &output && !folder.contents.empty() && is_below(output.file, folder.file);
+    });
+    if (!is_in_another) check_place(output);  // else its place may not be made yet
     for (const NamedFile& input : inputs) {
       // What isn't there, as a shipped file isn't here, can't be lost.
       const bool may_be_lost = !input.contents.empty() || fs::is_regular_file(input.file, unknown);
