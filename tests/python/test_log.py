@@ -105,7 +105,7 @@ def test_refusals_and_remarks(wide, tmp_path):
         pirsim.read_log(wide, window_s=0)
     wide.write_text(WIDE.replace("02:01:00,1,1", "02:00:30,1,1"))
     with pytest.warns(pirsim.InputWarning, match="a second reading of the same time"):
-        pirsim.read_log(wide)
+        pirsim.read_log(wide, {"rows": "readings"})
 
 
 def test_pandas(wide):

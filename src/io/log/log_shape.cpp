@@ -399,15 +399,17 @@ class Finder {
   [[nodiscard]] std::vector<std::size_t> states_beside(std::size_t sensor) const {
     std::array<std::vector<std::size_t>, 3> by_rank;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (i == sensor || is_of(time_, i) || is_bookkeeping(i) || !has_states(i)) continue;
-      if (says(i) == NameSays::state) by_rank[0].push_back(i);
+      if (i == sensor || is_of(time_, i) || is_bookkeeping(i)) continue;
+      if (says(i) == NameSays::state) by_rank[0].push_back(i);  // also where the first lines are of other quantities
+      if (!has_states(i)) continue;
       if (says(i) == NameSays::motion || says(i) == NameSays::presence) by_rank[1].push_back(i);
       if (says(i) == NameSays::nothing && looks_like_motion(i)) by_rank[2].push_back(i);
     }
     for (std::vector<std::size_t>& columns : by_rank) {
       if (columns.empty()) continue;
-      const auto is_constant = [&](std::size_t i) { return known_states(i).size() < 2; };
-      if (!std::ranges::all_of(columns, is_constant)) std::erase_if(columns, is_constant);
+      std::size_t most = 0;  // flags that never change are no states beside those that do
+      for (const std::size_t i : columns) most = std::max(most, known_states(i).size());
+      std::erase_if(columns, [&](std::size_t i) { return known_states(i).size() < most; });
       std::erase_if(columns, [&](std::size_t i) {  // another one's copy
         return i != columns.front() && tells(i, columns.front()) && tells(columns.front(), i) &&
                known_states(i).size() > 1;
@@ -425,6 +427,7 @@ class Finder {
   }
 
   [[nodiscard]] std::optional<SensorAndState> sensor_and_state() const {
+    if (map_.form == LogMap::Form::wide) return std::nullopt;
     if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
       if (map_.sensor_column.empty() || map_.state_column.empty())
         refuse("a map of events names both columns, sensor and state");
@@ -433,9 +436,9 @@ class Finder {
     const auto is_column = [&](const LogMap::Sensor& sensor) {
       return std::ranges::find(table_.names, sensor.in_log) != table_.names.end();
     };
-    const bool names_columns = !map_.sensors.empty() && std::ranges::all_of(map_.sensors, is_column);
+    const bool names_columns = std::ranges::any_of(map_.sensors, is_column);
     const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
-    if (map_.form == LogMap::Form::wide || (map_.form == LogMap::Form::found && is_told_wide)) return std::nullopt;
+    if (map_.form == LogMap::Form::found && is_told_wide) return std::nullopt;
     if (table_.header_line == 0) {
       if (const auto found = behind()) return found;
     }
