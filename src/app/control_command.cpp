@@ -212,7 +212,7 @@ void check_options(const ControlOptions& options) {
 void control_light(const ControlOptions& options) {
   check_options(options);
   if (!options.rows.empty()) {
-    const control::RowFiles rows(options.rows);
+    control::RowFiles rows(options.rows);
     keep_inputs(options.inputs, rows.files());
     return control_rows(options, rows);
   }

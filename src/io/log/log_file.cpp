@@ -442,7 +442,7 @@ void LogFile::take_interval(std::int64_t us, int line) {
   if (!state || *state == log_state::unknown)
     return fault("state", line, *shape_.state,
                  [&] { return quoted(fields_[*shape_.state]) + " doesn't say whether this is motion"; });
-  reading_.note_row(*end);
+  reading_.note_row(*end, path_, line);
   ++track->n_states;
   if (*state == log_state::off) return;  // as between all intervals
   reading_.events.add(*track, us, log_state::on);
