@@ -155,7 +155,7 @@ TEST_CASE("intervals: on from begin to end, off at all other times, overlapping 
     CHECK(windows_of(read_log_text(text, io::parse_log_map(io::to_yaml(log.map), "map")), 1.0) == expected);
     CHECK(log.remarks.empty());
   }
-  const Log overlapping = read_log_text("start,end,sensor\n0,9,A\n2,4,A\n3,12,A\n12,13,A\n15,15,A\n20,21,A\n");
+  const Log overlapping = read_log_text("start,end,sensor\n0,9,A\n2,4,A\n6,12,A\n12,13,A\n15,15,A\n20,21,A\n");
   CHECK(windows_of(overlapping, 1.0) == Texts{"111111111111100100001."});
   REQUIRE(overlapping.remarks.size() == 1);
   CHECK_THAT(overlapping.remarks.front().message, contains("; 1 more like this"));

@@ -160,6 +160,10 @@ TEST_CASE("A log is known by its first line", "[measured]") {
   CHECK(looks_like_log("Date,Time,S6_PIR\n"));
   CHECK(looks_like_log("entity_id,state,last_changed\n"));
   CHECK(looks_like_log("2026-03-02 08:00:00 M001 ON\n"));
+  CHECK(looks_like_log("start,end,sensor\n"));
+  CHECK(looks_like_log("[08:37:08][D][binary_sensor:036]: 'PIR': Sending state ON\n"));
+  CHECK(looks_like_log("\"Plot Title: Room 12\"\n"));
+  CHECK(looks_like_log(std::string("SQLite format 3") + '\0'));
   CHECK_FALSE(looks_like_log("replicate,trial,time_s,time,PIR1\n"));
   CHECK_FALSE(looks_like_log("trial,sensor,seconds\n"));
   CHECK_FALSE(looks_like_log("trial,tim_s,PIR1\n"));
