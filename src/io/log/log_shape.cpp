@@ -314,8 +314,8 @@ class Finder {
   [[nodiscard]] bool find_intervals(LogShape& shape) const {
     constexpr std::array<std::string_view, 4> begins{"start", "begin", "started", "from"};
     constexpr std::array<std::string_view, 6> ends{"end", "stop", "ended", "stopped", "finish", "to"};
+    if (map_.form == LogMap::Form::wide || map_.form == LogMap::Form::events) return false;
     const bool is_told = map_.form == LogMap::Form::intervals || !map_.end.empty();
-    if (!is_told && map_.form != LogMap::Form::found) return false;
     const std::vector<std::string> begin = map_.time.empty() ? times_called(begins) : map_.time;
     const std::vector<std::string> end = map_.end.empty() ? times_called(ends) : map_.end;
     if (begin.empty() || end.empty()) {
