@@ -93,6 +93,14 @@ class LongWork(unittest.TestCase):
                   "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "placements.yaml",
                   "--set", "search.evaluations=100000", stops=75)
 
+    def test_a_search_by_seats_tells_all_sets(self):
+        told = self.told(r"\x1b\[K\r\x1b\[K", "placements", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                         DATA / "studies" / "placements.yaml", "--set", "by=seats", "--set", "search.evaluations=60")
+        counts = [(int(done), int(all_)) for done, all_ in re.findall(r"(\d+) of (\d+) sets", told)]
+        self.assertTrue(counts)
+        self.assertTrue(all(done <= all_ for done, all_ in counts), counts)
+        self.assertNotRegex(told, r"-\d|\d{6}")
+
     def test_a_reference_table_is_estimated(self):
         rows = self.folder / "rows.csv"
         subprocess.run([PIRSIM, "run", "-q", *self.room, "--replicates", "1", "-o", rows], check=True)

@@ -165,7 +165,9 @@ class OwnRoom(unittest.TestCase):
                 time = row["Date"].replace("/", "-") + "T" + row["Time"]
                 errors.append(abs(int(counts[time]["people"]) - int(row["Room_Occupancy_Count"])))
         self.assertIn(f"wrong by {sum(errors) / len(errors):.2f} people on average, over {len(errors)} readings", told)
-        for row in counts.values():
+        told = [row for row in counts.values() if row["people"]]
+        self.assertLess(len(told), len(counts))  # of the night between the days nothing is known
+        for row in told:
             p = [float(value) for name, value in row.items() if name[0] == "p" and name[1:].isdigit()]
             self.assertAlmostEqual(sum(p), 1.0, delta=0.0005 * len(p) + 1e-9)
             self.assertAlmostEqual(sum(n * q for n, q in enumerate(p)), float(row["mean"]), delta=0.02)
