@@ -10,7 +10,7 @@
 namespace pirsim::io {
 namespace {
 
-// All shares are `assumed`; made logs of 16 forms, holds and gaps tried them (tests/unit/io/log_grid_test.cpp).
+// All shares are `assumed`; 2000 made logs tried them (tests/unit/io/log_grid_test.cpp).
 constexpr double nearly_all = 0.9, most = 0.8;
 constexpr std::size_t few_rows = 8;
 

@@ -426,6 +426,13 @@ class Finder {
     return std::nullopt;
   }
 
+  /// Of sensors and people, by the map: columns, or entities.
+  [[nodiscard]] std::vector<std::string> told_names() const {
+    std::vector<std::string> names;
+    for (const LogMap::Sensor& sensor : map_.sensors) names.push_back(sensor.in_log);
+    if (!map_.people.empty()) names.push_back(map_.people);
+    return names;
+  }
   [[nodiscard]] std::optional<SensorAndState> sensor_and_state() const {
     if (map_.form == LogMap::Form::wide) return std::nullopt;
     if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
@@ -433,10 +440,10 @@ class Finder {
         refuse("a map of events names both columns, sensor and state");
       return SensorAndState{named(map_.sensor_column), named(map_.state_column)};
     }
-    const auto is_column = [&](const LogMap::Sensor& sensor) {
-      return std::ranges::find(table_.names, sensor.in_log) != table_.names.end();
+    const auto is_column = [&](const std::string& name) {
+      return std::ranges::find(table_.names, name) != table_.names.end();
     };
-    const bool names_columns = std::ranges::any_of(map_.sensors, is_column);
+    const bool names_columns = std::ranges::any_of(told_names(), is_column);
     const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
     if (map_.form == LogMap::Form::found && is_told_wide) return std::nullopt;
     if (table_.header_line == 0) {
@@ -519,7 +526,11 @@ class Finder {
   [[nodiscard]] std::optional<SensorAndState> proven() const {
     std::vector<SensorAndState> given, open;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (!is_left_open(i)) continue;
+      const auto has = [&](const std::string& name) {
+        return table_.count(i, [&](const std::string& text) { return text == name; }) > 0;
+      };
+      const std::vector<std::string> told = told_names();
+      if (!is_left_open(i) || (!told.empty() && std::ranges::none_of(told, has))) continue;
       for (const std::size_t state : states_beside(i)) {
         const Proof proof = proof_of({i, state});
         if (proof == Proof::given) given.push_back({i, state});

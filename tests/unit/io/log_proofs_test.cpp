@@ -85,8 +85,8 @@ TEST_CASE("a cadence makes readings, also with lost rows, gaps and seconds that 
     std::string text = "time,A,B\n";
     for (int i = 1; i < 200; ++i) {
       if (lost > 0 && i % lost == 3) continue;
-      text += std::to_string(30 * i + (i % 3 == 0 ? 1 : 0) + (i > 100 ? 3600 : 0)) + ',' +
-              std::to_string(i / 4 % 2) + ',' + std::to_string(i / 7 % 2) + '\n';
+      text += std::to_string(30 * i + (i % 3 == 0 ? 1 : 0) + (i > 100 ? 3600 : 0)) + ',' + std::to_string(i / 4 % 2) +
+              ',' + std::to_string(i / 7 % 2) + '\n';
     }
     const Log log = read_log_text(text);
     CHECK(log.interval_us / 1'000'000 == 30);
@@ -102,9 +102,9 @@ TEST_CASE("rows that change one sensor each at equal steps may be both") {
 }
 
 TEST_CASE("few rows at any step aren't readings") {
-  const std::vector<Log> logs =
-      settled("time,hall_motion\n2025-03-05 00:00:00,0\n2025-03-05 10:00:00,1\n2025-03-05 10:30:00,0\n2025-03-05 "
-              "23:59:00,0\n");
+  const std::vector<Log> logs = settled(
+      "time,hall_motion\n2025-03-05 00:00:00,0\n2025-03-05 10:00:00,1\n2025-03-05 10:30:00,0\n2025-03-05 "
+      "23:59:00,0\n");
   CHECK(windows_of(logs[1], 1800.0).front() == std::string(20, '0') + "1" + std::string(26, '0') + ".");
   CHECK_FALSE(read_log_text("time,A\n0,0\n100,1\n130,0\n400,1\n433,0\n").has_readings());
 }
@@ -131,9 +131,10 @@ TEST_CASE("a table of devices and states with further columns tells events of de
     return text;
   };
   const Texts expected = windows_of(read_log_text(rows("time,device,state", "")), 10.0);
-  for (const auto& [header, more] :
-       {std::pair{"timestamp,room,motion,light", ",0"}, {"time,device,occupancy,battery_low,tamper", ",false,false"},
-        {"ts,id,val,ack,q", ",true,0"}, {"when,who,what,note", ",x"}}) {
+  for (const auto& [header, more] : {std::pair{"timestamp,room,motion,light", ",0"},
+                                     {"time,device,occupancy,battery_low,tamper", ",false,false"},
+                                     {"ts,id,val,ack,q", ",true,0"},
+                                     {"when,who,what,note", ",x"}}) {
     const Log log = read_log_text(rows(header, more));
     CAPTURE(header);
     CHECK(log.map.form == LogMap::Form::events);
@@ -165,7 +166,8 @@ TEST_CASE("sensors that are numbers are no times, and no states") {
   CHECK(read_log_text(ids).clock == LogClock::zoned);
   // Seconds of the log's own beside another column that grows.
   std::string rows;
-  for (int i = 0; i < 20; ++i) rows += std::to_string(i) + ',' + std::to_string(30 * i) + ',' + std::to_string(i / 3 % 2) + '\n';
+  for (int i = 0; i < 20; ++i)
+    rows += std::to_string(i) + ',' + std::to_string(30 * i) + ',' + std::to_string(i / 3 % 2) + '\n';
   CHECK(settled(rows)[1].interval_us == 30'000'000);
 }
 
@@ -180,16 +182,20 @@ TEST_CASE("columns beside the names of sensors: days of the week aren't devices"
 }
 
 TEST_CASE("words of sentences are no table") {
-  CHECK_THROWS_WITH(read_log_text("2026-03-02 08:00:00 motion detected in hall\n2026-03-02 08:01:00 no motion in hall\n"),
-                    contains("words, not a table") && contains("{pirsim_log: 1, form: events, sensor: COLUMN"));
+  CHECK_THROWS_WITH(
+      read_log_text("2026-03-02 08:00:00 motion detected in hall\n2026-03-02 08:01:00 no motion in hall\n"),
+      contains("words, not a table") && contains("{pirsim_log: 1, form: events, sensor: COLUMN"));
 }
 
 TEST_CASE("what is called occupancy or presence is a sensor, unless a map says that it is the truth") {
   const auto rows = [](const std::string& header) {
-    const auto bit = [&](int i) { return std::string(header.ends_with("detected") ? (i % 2 == 0 ? "off" : "on") : (i % 2 == 0 ? "0" : "1")); };
+    const auto bit = [&](int i) {
+      return std::string(header.ends_with("detected") ? (i % 2 == 0 ? "off" : "on") : (i % 2 == 0 ? "0" : "1"));
+    };
     std::string text = header + '\n';
     for (int i = 1; i < 40; ++i)
-      text += (header.starts_with("A") ? "0," : "") + std::to_string(10 * i) + ',' + bit(i / 3) + ',' + bit(i / 5) + '\n';
+      text +=
+          (header.starts_with("A") ? "0," : "") + std::to_string(10 * i) + ',' + bit(i / 3) + ',' + bit(i / 5) + '\n';
     return text;
   };
   const Log two = read_log_text(rows("time,hall_occupancy,desk_occupancy"));
@@ -212,8 +218,7 @@ TEST_CASE("what is called occupancy or presence is a sensor, unless a map says t
 
 TEST_CASE("one column that is always the other's opposite is no second sensor") {
   std::string text = "time,motion,clear\n";
-  for (int i = 1; i < 40; ++i)
-    text += std::to_string(10 * i) + (i / 3 % 2 == 0 ? ",0,1\n" : ",1,0\n");
+  for (int i = 1; i < 40; ++i) text += std::to_string(10 * i) + (i / 3 % 2 == 0 ? ",0,1\n" : ",1,0\n");
   CHECK(sensors_of(settled(text)[0]) == Texts{"motion"});
 }
 
@@ -240,7 +245,8 @@ TEST_CASE("a table whose series were joined by time: an empty cell is no change"
 
 TEST_CASE("rows that aren't later than those before are left out by a map alone") {
   std::string text = "time,A\n";
-  for (int i = 1; i < 100; ++i) text += std::to_string(30 * i) + ",0\n" + (i % 20 == 0 ? std::to_string(30 * i) + ",1\n" : "");
+  for (int i = 1; i < 100; ++i)
+    text += std::to_string(30 * i) + ",0\n" + (i % 20 == 0 ? std::to_string(30 * i) + ",1\n" : "");
   CHECK_THROWS_WITH(read_log_text(text), contains("log.csv:22:1: error: 4 of 103 rows are no later than"));
   LogMap map;
   map.rows = LogMap::Rows::readings;
@@ -258,7 +264,8 @@ TEST_CASE("rows of changes that step back are left out, and told") {
 TEST_CASE("a word that is no state ends what is known, from the first event on") {
   const Log log = read_log_text(
       "time,sensor,state\n0,PIR1,on\n60,PIR1,jammed\n600,PIR1,off\n1200,PIR1,on\n1800,PIR1,off\n1860,PIR1,on\n");
-  CHECK(windows_of(log, 60.0).front() == "1" + std::string(9, '.') + std::string(10, '0') + std::string(10, '1') + "01");
+  CHECK(windows_of(log, 60.0).front() ==
+        "1" + std::string(9, '.') + std::string(10, '0') + std::string(10, '1') + "01");
   REQUIRE(log.remarks.size() == 1);
   CHECK(log.remarks[0].message.find("'jammed' is no state") == 0);
   // Newest first, as histories are downloaded.
@@ -281,7 +288,8 @@ TEST_CASE("no sensor is called as a column of rows") {
     CHECK_THROWS_WITH(io::parse_log_map(map, "map"), contains("map:2:") && contains("is the name of a column of rows"));
   }
   CHECK(sensors_of(read_log_text("time,sensor,state\n0,people,on\n5,people,off\n9,people,on\n",
-                                 io::parse_log_map("{pirsim_log: 1, sensors: {PIR1: people}}", "map"))) == Texts{"PIR1"});
+                                 io::parse_log_map("{pirsim_log: 1, sensors: {PIR1: people}}", "map"))) ==
+        Texts{"PIR1"});
   CHECK_THROWS_WITH(read_log_text("time,sensor,state\n0,people,on\n5,people,off\n9,people,on\n"),
                     contains(R"({pirsim_log: 1, sensors: {PIR1: "people"}})"));
 }
