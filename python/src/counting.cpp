@@ -254,7 +254,11 @@ void add_counters(nb::module_& module) {
   module.def(
       "read_counter_bytes",
       [](const std::string& file) {
-        const std::string bytes = counting::read_counter_bytes(file);
+        std::string bytes;
+        {
+          const nb::gil_scoped_release release;  // whoever writes a pipe may be another thread
+          bytes = counting::read_counter_bytes(file);
+        }
         return nb::bytes(bytes.data(), bytes.size());
       },
       nb::arg("file"), "Of a file that isn't larger than a counter's may be.");
