@@ -92,6 +92,8 @@ class Log:
     """[sensor] what the log tells of it."""
     pairs: tuple[LogPair, ...] = field(repr=False)
     """The most alike first."""
+    _files: tuple[PathOr, ...] = field(default=(), repr=False)
+    """That it was read from."""
 
     def __repr__(self) -> str:
         shares = ", ".join(f"{one.name} {100 * (one.motion_share or 0):.1f} %" for one in self.facts[:8])
@@ -151,4 +153,4 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
                utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
                map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),
-               people_means=found["people_means"], is_elapsed=is_elapsed)
+               people_means=found["people_means"], is_elapsed=is_elapsed, _files=tuple(files))

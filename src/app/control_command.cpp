@@ -182,6 +182,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
   if (source.about().people == control::People::unknown) {
     costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
   }
+  outputs.finish(options);  // which may refuse what can't be written
   tell(costs.remarks, options.inputs.verbosity);
   if (options.inputs.verbosity != Verbosity::quiet) std::cout << control::to_text(costs);
   require_written();
@@ -194,7 +195,6 @@ void control_rows(const ControlOptions& options, Source&& source) {
     if (!options.rule.empty()) report.footer += ", " + io::name_of_input(options.rule);
     io::write_report(options.report, report);
   }
-  outputs.finish(options);
   tell_written({{options.output}, {options.light}, {options.schedule}, {options.report}}, options.inputs.verbosity);
 }
 

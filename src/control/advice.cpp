@@ -86,9 +86,11 @@ std::string best_guess(const LightCosts& light, const DelayCosts& at) {
   const std::string seen =
       at.false_offs == 0 ? "no false-off" : counted(static_cast<std::size_t>(at.false_offs), "false-off");
   const double days = std::round(10.0 * light.known_days) / 10.0;
-  return shortest_number(days) + (days == 1.0 ? " day is" : " days are") +
-         " too few to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
-         " without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
+  const std::string data = days < 1.0    ? hours(24.0 * light.known_days) + " is too little"
+                           : days == 1.0 ? "1 day is too little"
+                                         : shortest_number(days) + " days are too few";
+  return data + " to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
+         " days without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
          hours(light.occupied_h) + " of occupied time, which shows less than one in " +
          hours(light.occupied_h / most_expected(at.false_offs)) + " (95 %), and " + empty_light(light, at) +
          compared(light, at) + dark_all_the_same(at);

@@ -94,6 +94,13 @@ void Schedule::add(const LitRow& lit) {
 }
 
 void Schedule::write(std::ostream& out) const {
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    bool is_known = false;
+    for (const auto& [day, sums] : days_) {
+      for (std::size_t at = i; at < sums.size(); at += names_.size()) is_known = is_known || sums[at].known > 0.0;
+    }
+    if (!is_known) throw Error(ErrorCode::input, "there is no schedule of light '" + names_[i] + "': nothing is known of it");
+  }
   const bool knows = people_ == People::known;
   out << "time";
   for (const std::string& name : names_) out << ",light_" << name << (knows ? ",presence_" + name : "");

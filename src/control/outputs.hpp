@@ -31,6 +31,7 @@ class Schedule {
   Schedule(const RuleSpec& rule, double window_s, int step_min, People people);
   /// Throws Error(input) for a row without a clock.
   void add(const LitRow& lit);
+  /// Throws Error(input) for a light of which nothing is known.
   void write(std::ostream& out) const;
   [[nodiscard]] std::size_t n_days() const noexcept { return days_.size(); }
   /// What a reader of whole years doesn't expect.

@@ -92,6 +92,8 @@ Counter counter_from(const Json& json) {
   constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000;
   Counter counter;
   counter.settings.step_s = positive(member(json, "step_s"), "step_s");
+  constexpr double longest_step_s = 86'400.0;
+  if (counter.settings.step_s > longest_step_s) throw std::domain_error("step_s is longer than a day");
   counter.settings.modes = whole(member(json, "modes"), "modes", 1, most_modes);
   counter.n_sensors = whole(member(json, "sensors"), "sensors", 1, most_sensors);
   counter.n_counts = whole(member(json, "counts"), "counts", 2, most_counts);

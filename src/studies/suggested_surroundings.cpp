@@ -24,16 +24,19 @@ void widen(Extent& extent, const Extent& by) {
   extent.least = glm::min(extent.least, by.least), extent.most = glm::max(extent.most, by.most);
 }
 
-/// A sheet that is much larger than all the rest along two axes, or a shell along all three. No unit and no axis is
-/// known yet.
+/// A sheet that is much larger than all the rest along two axes, or a shell along all three, of which a dome may end
+/// above the lowest of the rest. No unit and no axis is known yet.
 bool lies_around(const Body& body, const Extent& rest) {
   constexpr double times = 1.5, thin = 0.1;  // assumed (1.3-1.8; 0.05-0.2, of its length: hilly ground)
+  constexpr double short_of = 0.05;          // assumed (0.02-0.1, of its length)
+  const double slack = short_of * body.longest();
   const Vec3 size = body.extent.size(), rest_size = rest.size();
   int n_around = 0;
   bool is_thin = false;
   for (int axis = 0; axis < 3; ++axis) {
-    const bool is_around = size[axis] >= times * rest_size[axis] && body.extent.least[axis] <= rest.least[axis] &&
-                           body.extent.most[axis] >= rest.most[axis];
+    const bool is_around = size[axis] >= times * rest_size[axis] &&
+                           body.extent.least[axis] <= rest.least[axis] + slack &&
+                           body.extent.most[axis] >= rest.most[axis] - slack;
     n_around += is_around ? 1 : 0;
     is_thin = is_thin || (!is_around && size[axis] <= thin * body.longest());
   }

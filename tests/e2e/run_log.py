@@ -66,6 +66,8 @@ class Inputs(Case):
         os.mkfifo(pipe)
         with subprocess.Popen(["sh", "-c", f"cat '{self.write('log', WIDE)}' > '{pipe}'"]):
             self.assertEqual(self.rows(pipe, "--window", 1), ROWS)
+        with open(self.write("log", WIDE), "rb") as redirected:  # where it stands, and not from its begin
+            self.assertEqual(self.rows("-", "--window", 1, stdin=redirected), ROWS)
         costs = self.folder / "costs.csv"
         run("control", "--log", "-", "--delay", 1, "-q", "-o", costs, input=WIDE.encode())
         through = costs.read_text()

@@ -176,6 +176,11 @@ def test_the_shell_writes_over_nothing_that_it_reads(dataset, tmp_path):
         told = shell("estimate", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "--map", tmp_path / "map.yaml",
                      "-o", output, code=2)
         assert f"and -o are one file: '{output}'" in told
+    for log in (tmp_path / "link.csv", pirsim.read_log(tmp_path / "log.csv")):
+        estimates = counting.load(tmp_path / "counter.json").estimate(log)
+        for output in (tmp_path / "log.csv", tmp_path / "hard.csv"):
+            with pytest.raises(pirsim.UsageError, match="log and file are one file"):
+                estimates.write_csv(output)
     assert {file: file.read_bytes() for file in tmp_path.iterdir()} == before
     for table in (dataset / "datapackage.json", dataset / "rooms.csv", next(dataset.glob("rows/*/*"))):
         content = table.read_bytes()

@@ -34,6 +34,12 @@ def test_unknown_bits_of_an_array(as_what):
     assert _readings.as_motion(written(as_what)).tolist() == BITS
 
 
+def test_bits_are_numbers():
+    for bits in (np.array(BITS, dtype=complex), np.array(BITS).astype("datetime64[s]")):
+        with pytest.raises(ValueError, match="expected numbers, got"):
+            _readings.as_motion(bits)
+
+
 def test_unknown_people_of_a_day():
     for people in ([1, None, 2, 0], [1, np.nan, 2, 0], np.ma.array([1, 7, 2, 0], mask=[0, 1, 0, 0]), [1, -1, 2, 0]):
         assert _readings.as_day(counting.Day(1, BITS, people)).people.tolist() == [1, -1, 2, 0]

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._files import write
+from .._files import keep_inputs, write
 from .._study import PathOr
 from ._readings import Readings
 
@@ -62,7 +62,9 @@ class Estimates:
         return pd.DataFrame(columns)
 
     def write_csv(self, file: PathOr) -> None:
-        """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count."""
+        """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count.
+        Raises UsageError for the file of the log."""
+        keep_inputs([("file", file)], [("log", one) for one in self._readings.files])
         write(file, _core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
 
 

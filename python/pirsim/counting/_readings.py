@@ -40,6 +40,8 @@ def _known_numbers(values: npt.ArrayLike, unknown: int) -> npt.NDArray[Any]:
     """As numbers, `unknown` in place of what is masked, NaN, None, pandas' NA or an empty text. Raises ValueError."""
     array = np.ma.asarray(values)
     known, data = ~np.ma.getmaskarray(array), np.asarray(array.data)
+    if data.dtype.kind not in "buifOU":
+        raise ValueError(f"expected numbers, got {data.dtype}")
     if data.dtype.kind in "OU":
         known &= np.array([str(one) not in ("", "None", "nan", "<NA>", "--") for one in data.ravel()],
                           dtype=bool).reshape(data.shape)
@@ -102,6 +104,8 @@ class Readings(NamedTuple):
     has_clock: bool
     traits: _core.LogTraits
     """What a log tells of itself; of an array nothing."""
+    files: tuple[PathOr, ...]
+    """That the log was read from."""
 
 
 def _is_files(log: Any) -> bool:
@@ -133,4 +137,4 @@ def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
                              "it can't tell what was between")
         traits = _core.LogTraits(log.interval_s, names, [one.hold_s for one in log.facts])
     return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock,
-                    traits)
+                    traits, log._files if isinstance(log, Log) else ())

@@ -19,9 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// None of what is read once, from where it stands.
 std::string first_bytes(const fs::path& file) {
   std::error_code fault;
-  if (!fs::is_regular_file(file, fault)) return {};
+  if (file == standard_input || !fs::is_regular_file(file, fault)) return {};
   std::array<char, 20> bytes{};
   PosixFile opened(file, PosixFile::Mode::read);
   return {bytes.data(), opened.read(bytes.data(), bytes.size())};

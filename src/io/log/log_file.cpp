@@ -325,6 +325,14 @@ void LogFile::take(std::string_view line, int number) {
   const auto us = time_of_row(timer_, shape_.time, number);
   if (!us) return;
   ++reading_.n_rows;
+  constexpr std::int64_t half_a_day_us = 43'200'000'000;
+  if (shape_.time.kind == Stamp::Kind::time_of_day && row_us_ && *us < *row_us_ - half_a_day_us) {
+    fault("midnight", number, shape_.time.first, [] {
+      return "the times of day step back over midnight, and no date tells which day it is: name columns of date and "
+             "time in a map (time: [Date, Time])";
+    });
+  }
+  row_us_ = us;
   reading_.note_row(*us, path_, number);
   if (shape_.form == LogMap::Form::events) return take_event(*us, number);
   if (shape_.form == LogMap::Form::intervals) return take_interval(*us, number);

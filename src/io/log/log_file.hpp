@@ -106,6 +106,7 @@ class LogFile {
   std::vector<std::string_view> fields_;
   std::vector<std::string> unquoted_;
   std::vector<std::int32_t> values_, last_values_;  ///< of a wide row: sensors, then people
+  std::optional<std::int64_t> row_us_;              ///< of the row before
   std::int64_t last_us_ = 0;                        ///< of a wide row
   std::uint64_t n_rows_ = 0, n_disordered_ = 0;     ///< of a wide log: of them are not later than the row before
   int first_disordered_ = 0;                        ///< its line

@@ -391,8 +391,19 @@ class Finder {
     return std::ranges::all_of(table_.rows,
                                [&](const auto& row) { return of.try_emplace(row[a], row[b]).first->second == row[b]; });
   }
+  /// 1, 2, 3, ... from row to row.
+  [[nodiscard]] bool numbers_rows(std::size_t column) const {
+    std::optional<std::int32_t> last;
+    return std::ranges::all_of(table_.rows, [&](const auto& row) {
+      const auto number = read_count(row[column]);
+      const bool follows = number && (!last || *number == *last + 1);
+      last = number;
+      return follows;
+    });
+  }
   [[nodiscard]] bool is_left_open(std::size_t column) const {
-    return says(column) == NameSays::nothing && !is_of(time_, column) && !is_bookkeeping(column);
+    const bool is_other = is_of(time_, column) || is_bookkeeping(column) || numbers_rows(column);
+    return says(column) == NameSays::nothing && !is_other;
   }
 
   /// Columns that may hold the states of sensors that `sensor` names: called so; or called motion, or presence; or any.

@@ -31,6 +31,12 @@ PersonColumns::PersonColumns(const CsvTable& table, Diagnostics& faults)
   if (!id) id = table.required_column("person", faults);
 }
 
+bool names_somebody(const CsvTable& table, std::size_t row, const PersonColumns& columns, RepeatedFaults& faults) {
+  if (!table.text(row, *columns.id).empty()) return true;
+  faults.add("nobody", table.where(row, *columns.id), table.names()[*columns.id] + ": expected a name");
+  return false;
+}
+
 std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const PersonColumns& columns,
                              Diagnostics& faults) {
   if (!columns.x || !columns.z) return std::nullopt;

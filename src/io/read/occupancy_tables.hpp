@@ -32,6 +32,9 @@ struct PersonColumns {
   PersonColumns(const CsvTable& table, Diagnostics& faults);
   std::optional<std::size_t> id, x, z;
 };
+/// False, which is told, for a row of nobody.
+[[nodiscard]] bool names_somebody(const CsvTable& table, std::size_t row, const PersonColumns& columns,
+                                  RepeatedFaults& faults);
 /// None where the table doesn't say, and after a fault, which is told.
 [[nodiscard]] std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const PersonColumns& columns,
                                            Diagnostics& faults);

@@ -57,6 +57,7 @@ class PlacesReader {
     if (!has_rows_) first_s_ = row.seconds;
     has_rows_ = true;
     last_s_ = row.seconds;
+    if (!names_somebody(table_, row.row, columns_, repeated_)) return;
     const std::string& person = table_.text(row.row, *columns_.id);
     std::vector<Row>& own = rows_[person];
     if (!own.empty() && own.back().seconds == row.seconds)

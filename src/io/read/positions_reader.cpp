@@ -51,6 +51,7 @@ class PositionsReader {
  private:
   void add(std::size_t row, const Where& where, double seconds, const Vec2& point, std::optional<double> heading_deg) {
     const std::string& person = table_.text(row, *columns_.id);
+    if (!names_somebody(table_, row, columns_, repeated_)) return;
     const auto [known, is_new] = known_.try_emplace(person, positions_.tracks.size());
     if (is_new) {
       TrackSpec& track = positions_.tracks.emplace_back();

@@ -91,6 +91,7 @@ class RowReader {
   explicit RowReader(std::unique_ptr<Lines> lines);
   [[nodiscard]] double usual_step_s();
   void check(const Sample& row);
+  void check_clock(const Sample& row);
   [[nodiscard]] std::int64_t missing_in(double step_s);
   [[noreturn]] void refuse();
 
@@ -100,8 +101,8 @@ class RowReader {
   double step_s_ = 0.0;
   std::int64_t n_missing_ = 0;
   std::set<std::pair<int, std::string>> runs_;  ///< that have begun
-  int replicate_ = 0;                           ///< of the row before, as `trial_` and `time_s_`
-  std::string trial_;
+  int replicate_ = 0;                           ///< of the row before, as what follows
+  std::string trial_, clock_;
   double time_s_ = 0.0;
   std::int64_t gap_ = 0;  ///< before it
   int n_alike_ = 0;       ///< gaps of that length without a row in between that follows at once

@@ -85,6 +85,9 @@ TEST_CASE("a schedule is the mean over runs of a date, and over the rows that ar
   for (int i = 0; i < 30; ++i)
     unpeopled.add(row_at(minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), -1));
   CHECK_THAT(unpeopled.text(), contains("time,light_desk\n2026-03-02T00:00,0.5000\n2026-03-02T00:30,0.0000\n"));
+  Scheduled uncounted;  // a column of people in which nothing stands
+  for (int i = 0; i < 30; ++i) uncounted.add(row_at(minute_s * (i + 1), 1, -1));
+  CHECK_THROWS_WITH(uncounted.text(), contains("there is no schedule of light 'desk': nothing is known of it"));
 }
 
 TEST_CASE("rows longer than a schedule's step cover all of theirs") {
@@ -165,7 +168,7 @@ TEST_CASE("the advice is the shortest delay that the days show to be long enough
   CHECK(short_of.ground == Ground::too_few_days);
   CHECK(short_of.delay_min == 7.0);
   CHECK_THAT(short_of.sentence, contains("desk: 20 days are too few to tell which delay goes off on somebody less than "
-                                         "once a week: 21 without a false-off would do. The best guess is 7 min: no "
+                                         "once a week: 21 days without a false-off would do. The best guess is 7 min: no "
                                          "false-off in 200.0 h of occupied time, which shows less than one in 67"));
   CHECK(shown.ground == Ground::shown);
   CHECK(shown.delay_min == 7.0);

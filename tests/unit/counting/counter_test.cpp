@@ -354,6 +354,9 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
     CHECK_THROWS_AS(read_counter(folder.path() / "spoilt.json"), Error);
   };
   Counter spoilt = counter;
+  spoilt.settings.step_s = 1e300;
+  refused(spoilt);
+  spoilt = counter;
   spoilt.moves[0] += 0.1;
   refused(spoilt);
   spoilt = counter;

@@ -195,6 +195,10 @@ TEST_CASE("times of JavaScript in quotes, columns of time stamps called _ts, and
       "AM\",0\n"
       "2,\"02/13/26 08:12:31 AM\",1\n3,\"02/13/26 08:14:01 AM\",0\n");
   CHECK(sensors_of(logger) == Texts{"Occupied (SEN S/N: 1)"});
+  const Log numbered = read_log_text(
+      "Plot Title: Room 12\n\"#\",\"Date Time, GMT-05:00\",\"Occupied (SEN S/N: 1)\",End\n1,02/13/26 08:00:00 AM,0,\n"
+      "2,02/13/26 08:12:31 AM,1,\n3,02/13/26 08:14:01 AM,0,\n4,02/13/26 09:21:32 AM,,Logged\n");
+  CHECK(sensors_of(numbered) == Texts{"Occupied (SEN S/N: 1)"});
 }
 
 TEST_CASE("the end of motion: told, by a hold, or lost") {

@@ -114,6 +114,8 @@ TEST_CASE("What is wrong with counts is told with its line and column") {
 TEST_CASE("Nobody is in two places at once") {
   refused("time_s,person,seat\n1,a,S1\n1,b,S2\n2,a,S1\n2,a,S3\n2,b,S2\n",
           "c.csv:5:1: error: 'a' has another row of this time: nobody is in two places at once", "places: c.csv");
+  refused("time_s,person,seat\n1,a,S1\n2,,S2\n", "c.csv:3:3: error: person: expected a name", "places: c.csv");
+  refused("time_s,id,x,z\n1,a,3,-1\n2,,3,-1\n", "c.csv:3:3: error: id: expected a name", "positions: c.csv");
   CHECK(occupancy_of("time_s,person,seat\n1,a,S1\n1,b,S1\n2,a,S1\n3,a,S2\n", "places: c.csv").places->stays.size() ==
         3);
   ScriptSpec script = script_of({});

@@ -81,6 +81,28 @@ TEST_CASE("missing rows are unknown, and runs stay runs", "[rows]") {
   REQUIRE(clocks.size() == 5);
   CHECK(clocks[2].clock == "2026-03-03T00:00:00");
   CHECK(clocks[3].clock == "2026-03-03T00:00:01");
+  const auto days = all_of("time_s,time,A\n1,2026-03-02T23:00:01,1\n2,2026-03-02T23:00:02,1\n108003,2026-03-04T05:00:03,1\n");
+  REQUIRE(days.size() == 108'003);
+  CHECK(days[2].clock == "2026-03-02T23:00:03");
+  CHECK(days[90'000].clock == "2026-03-04T00:00:01");
+}
+
+TEST_CASE("two rows tell how long they are by the first one's end, too", "[rows]") {
+  CHECK(all_of("time_s,A\n1,1\n1800,1\n").size() == 1800);
+  CHECK(all_of("time_s,A\n30,1\n60,1\n").size() == 2);
+  CHECK(all_of("time_s,A\n3600,1\n3630,1\n").size() == 2);
+}
+
+TEST_CASE("a row's clock goes on as its seconds do, but for summer time", "[rows]") {
+  const auto of = [](const std::string& third) {
+    return "time_s,time,A\n1800,2026-03-29T01:30:00,1\n3600,2026-03-29T02:00:00,1\n5400," + third + ",1\n";
+  };
+  CHECK(all_of(of("2026-03-29T02:30:00")).size() == 3);
+  CHECK(all_of(of("2026-03-29T03:30:00")).size() == 3);
+  CHECK(all_of(of("2026-03-29T01:30:00")).size() == 3);
+  for (const std::string moment : {"2026-03-30T02:30:00", "2026-03-29T02:31:00", "2026-03-28T02:30:00"})
+    CHECK_THAT(refusal_of(of(moment)), contains("f:4:6: error: time is"));
+  CHECK_THAT(refusal_of("time_s,time,A\n1,2026-02-30T08:00:01,1\n"), contains("f:2:3: error: time: expected"));
 }
 
 TEST_CASE("a sensor that a room of a dataset hasn't got isn't one without motion", "[rows]") {

@@ -226,15 +226,16 @@ TEST_CASE("the floor of a model is that of its rooms, whatever ground it stands 
       check(b, {"Ground"});
     }
   }
-  for (const double radius : {30.0, 500.0}) {
-    INFO("sky of " << radius << " m");
+  const auto [radius, is_dome] = GENERATE(table<double, bool>({{30.0, false}, {500.0, false}, {50.0, true}}));
+  {
+    INFO((is_dome ? "dome of " : "sky of ") << radius << " m");
     ModelBuilder b = plain;
     b.add("Ground", {-26, -0.151, -27}, {34, -0.15, 33});
     TriMesh sky;
     constexpr int around = 24, up = 12;
     for (int i = 0; i <= up; ++i) {
       for (int k = 0; k < around; ++k) {
-        const double height = 3.14159265 * i / up, turn = 2.0 * 3.14159265 * k / around;
+        const double height = 3.14159265 * i / (is_dome ? 2 * up : up), turn = 2.0 * 3.14159265 * k / around;
         sky.positions.emplace_back(4 + radius * std::sin(height) * std::cos(turn), radius * std::cos(height),
                                    3 + radius * std::sin(height) * std::sin(turn));
       }
