@@ -64,7 +64,10 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
   about_.columns = first_->format().columns();
   about_.people = first_->format().has(io::RowFormat::people) ? People::known : People::unknown;
   about_.window_s = first_->step_s();
-  if (!(about_.window_s > 0.0)) throw Error(ErrorCode::input, {files_.front().string()}, "there are no rows");
+  if (about_.window_s > 0.0) return;
+  Sample faulty;
+  static_cast<void>(first_->next(faulty));  // says what is wrong with rows of which none can be read
+  throw Error(ErrorCode::input, {files_.front().string()}, "there are no rows");
 }
 
 void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {

@@ -167,7 +167,7 @@ class Options(unittest.TestCase):
                     value = () if takes is None else (value_of(command, option),)
                     if option == "--format":
                         value += "--shard", "1/2"
-                    if command == ("check",) and option in ("--floor", "--output"):
+                    if command == ("check",) and option in ("--floor", "--ignore", "--output"):
                         value += "--suggest",
                     needed = with_folder(option, rest)
                     # A standard takes the place of a script.
@@ -439,7 +439,7 @@ class Light(unittest.TestCase):
         self.assertEqual((by_time["2026-03-02T08:15"]["light_light"], by_time["2026-03-02T08:15"]["presence_light"]), ("0.5000", "1.0000"))
         self.assertIn("the schedule has 23.5 h of which nothing is known", told.stderr)
         holed = write(self.folder, "holed.csv", head + "".join(runs[0]).replace("2026-03-02T08:07:00", ""))
-        self.assertIn("no clock", pirsim("control", holed, "--schedule", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
+        self.assertIn(":8:9: error: time: expected a local time", pirsim("control", holed, "--schedule", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
         self.assertFalse((self.folder / "h.csv").exists())
         log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
         pirsim("control", "--log", log, "--delay", 0, "--schedule", self.folder / "l.csv", "--report", self.folder / "l.html")

@@ -356,11 +356,6 @@ double RowReader::usual_step_s() {
     if (follows && row.time_s > before.time_s) ++steps[std::round((row.time_s - before.time_s) * 1e6) / 1e6];
     std::swap(before, row);
   });
-  if (n == 0 && !told_later.empty()) {
-    Diagnostics faults;
-    told_later.tell(faults);
-    faults.throw_if_errors();
-  }
   const auto usual = std::ranges::max_element(steps, {}, &std::pair<const double, int>::second);
   if (usual == steps.end()) return std::max(0.0, first_s);
   // Of two rows alone the first tells how long it is, too: a run's first row ends a step after the run began.

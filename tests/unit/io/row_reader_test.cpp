@@ -34,15 +34,15 @@ const std::string header = "replicate,trial,time_s,people,people_hall,door_front
 TEST_CASE("rows are read by the names of their columns, and an empty field is unknown", "[rows]") {
   const std::vector<Sample> rows = all_of(
       "# a comment\nB,time_s,people,trial,replicate,people_hall,door_front,A,time\n"
-      "1,1,2,x,3,1,0,0,2026-03-02T08:00:01\n"
-      ",2,,x,3,,,1.0,2026-03-02 08:00:02.5\n"
+      "1,1,2,x,3,1,0,0,2026-03-01T23:59:58\n"
+      ",2,,x,3,,,1.0,2026-03-01 23:59:59.5\n"
       "\n0.0,3,1.0,\"x\",3,0,1,1,2026-03-01T24:00\n"
       "1,1,0,#y,4,0,1,1,2026-03-02T08:00\n");
   REQUIRE(rows.size() == 4);
-  CHECK(rows[0] == Sample{3, "x", 1.0, {}, 2, {1, 0}, "2026-03-02T08:00:01", {1}, {0}});
+  CHECK(rows[0] == Sample{3, "x", 1.0, {}, 2, {1, 0}, "2026-03-01T23:59:58", {1}, {0}});
   CHECK(rows[1] ==
         Sample{
-            3, "x", 2.0, {}, unknown_people, {unknown_bit, 1}, "2026-03-02T08:00:02", {unknown_people}, {unknown_bit}});
+            3, "x", 2.0, {}, unknown_people, {unknown_bit, 1}, "2026-03-01T23:59:59", {unknown_people}, {unknown_bit}});
   CHECK(rows[2] == Sample{3, "x", 3.0, {}, 1, {0, 1}, "2026-03-02T00:00:00", {0}, {1}});
   CHECK(rows[3].trial == "#y");
   CHECK(rows[3].clock == "2026-03-02T08:00:00");
