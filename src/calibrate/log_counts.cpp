@@ -249,8 +249,8 @@ void write_counts_page(const std::filesystem::path& file, const LogCounts& count
   if (const auto known = error_of(counts))
     error = "Compared with the log's own counts it is " + in_words(*known) + ".";
   else if (counts.expected_error && counts.warning.empty())
-    error = "In rooms like those that the counter comes from such counts are wrong by " + fixed(counts.expected_error->low, 2) + " to " +
-            fixed(counts.expected_error->high, 2) +
+    error = "In rooms like those that the counter comes from such counts are wrong by " +
+            fixed(counts.expected_error->low, 2) + " to " + fixed(counts.expected_error->high, 2) +
             " people on average, from half an hour before the first person to half an hour after the last.";
   report.finding = counts.warning + (counts.warning.empty() || error.empty() ? "" : " ") + error;
   report.paragraphs = {

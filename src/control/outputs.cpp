@@ -99,7 +99,8 @@ void Schedule::write(std::ostream& out) const {
     for (const auto& [day, sums] : days_) {
       for (std::size_t at = i; at < sums.size(); at += names_.size()) is_known = is_known || sums[at].known > 0.0;
     }
-    if (!is_known) throw Error(ErrorCode::input, "there is no schedule of light '" + names_[i] + "': nothing is known of it");
+    if (!is_known)
+      throw Error(ErrorCode::input, "there is no schedule of light '" + names_[i] + "': nothing is known of it");
   }
   const bool knows = people_ == People::known;
   out << "time";

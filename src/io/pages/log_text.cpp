@@ -69,7 +69,8 @@ std::string form_in_words(const Log& log) {
                            : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
                                                 : "rows of changes";
   const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
-  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
+  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
+         people_in_words(log);
 }
 
 std::string log_in_words(const Log& log) {

@@ -418,8 +418,9 @@ void RowReader::check_clock(const Sample& row) {
   const double apart_s = std::abs(by_clock_s - by_time_s);
   const bool is_shift = apart_s <= most_shift_s && std::abs(std::remainder(apart_s, shifts_s)) <= whole_seconds;
   if (apart_s <= whole_seconds || is_shift) return;
-  faults_.add("clock", format_.where(RowFormat::time),
-              "time is " + csv_number(by_clock_s) + " s after the row before, and time_s " + csv_number(by_time_s) + " s");
+  faults_.add(
+      "clock", format_.where(RowFormat::time),
+      "time is " + csv_number(by_clock_s) + " s after the row before, and time_s " + csv_number(by_time_s) + " s");
 }
 
 std::int64_t RowReader::missing_in(double step_s) {

@@ -167,9 +167,10 @@ TEST_CASE("the advice is the shortest delay that the days show to be long enough
   const Advice short_of = advise(costs_of(20, {7})), shown = advise(costs_of(21, {7}));
   CHECK(short_of.ground == Ground::too_few_days);
   CHECK(short_of.delay_min == 7.0);
-  CHECK_THAT(short_of.sentence, contains("desk: 20 days are too few to tell which delay goes off on somebody less than "
-                                         "once a week: 21 days without a false-off would do. The best guess is 7 min: no "
-                                         "false-off in 200.0 h of occupied time, which shows less than one in 67"));
+  CHECK_THAT(short_of.sentence,
+             contains("desk: 20 days are too few to tell which delay goes off on somebody less than "
+                      "once a week: 21 days without a false-off would do. The best guess is 7 min: no "
+                      "false-off in 200.0 h of occupied time, which shows less than one in 67"));
   CHECK(shown.ground == Ground::shown);
   CHECK(shown.delay_min == 7.0);
   CHECK(shown.sentence ==

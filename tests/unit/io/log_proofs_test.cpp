@@ -254,7 +254,8 @@ TEST_CASE("rows that aren't later than those before are left out by a map alone"
 }
 
 TEST_CASE("times of day that run over midnight need a date") {
-  const std::string evening = "time,sensor,state\n21:00:00,hall_motion,off\n22:00:00,hall_motion,on\n23:00:00,hall_motion,off\n";
+  const std::string evening =
+      "time,sensor,state\n21:00:00,hall_motion,off\n22:00:00,hall_motion,on\n23:00:00,hall_motion,off\n";
   CHECK(read_log_text(evening).sensors.size() == 1);
   CHECK_THAT(refusal_of(evening + "01:00:00,hall_motion,on\n"), contains("step back over midnight"));
 }

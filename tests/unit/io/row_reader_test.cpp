@@ -81,7 +81,8 @@ TEST_CASE("missing rows are unknown, and runs stay runs", "[rows]") {
   REQUIRE(clocks.size() == 5);
   CHECK(clocks[2].clock == "2026-03-03T00:00:00");
   CHECK(clocks[3].clock == "2026-03-03T00:00:01");
-  const auto days = all_of("time_s,time,A\n1,2026-03-02T23:00:01,1\n2,2026-03-02T23:00:02,1\n108003,2026-03-04T05:00:03,1\n");
+  const auto days =
+      all_of("time_s,time,A\n1,2026-03-02T23:00:01,1\n2,2026-03-02T23:00:02,1\n108003,2026-03-04T05:00:03,1\n");
   REQUIRE(days.size() == 108'003);
   CHECK(days[2].clock == "2026-03-02T23:00:03");
   CHECK(days[90'000].clock == "2026-03-04T00:00:01");
