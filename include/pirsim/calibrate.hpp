@@ -158,7 +158,7 @@ struct LogTraits {
   std::vector<std::string> sensors{};            ///< empty: not told
   std::vector<std::optional<double>> holds_s{};  ///< (sensors) none: the log doesn't tell; empty: of no sensor
 };
-[[nodiscard]] LogTraits traits_of(const Log& log);
+[[nodiscard]] LogTraits traits_of(const LogFacts& facts);
 void remember(const LogTraits& log, counting::Counter& counter);
 
 struct LogCounts {

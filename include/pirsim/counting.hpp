@@ -10,12 +10,13 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/bits.hpp"
 #include "pirsim/interval.hpp"
 
 namespace pirsim::counting {
 
-inline constexpr std::uint8_t unknown_bit = 2;
-inline constexpr int unknown_count = -1;
+using pirsim::unknown_bit;
+inline constexpr int unknown_count = unknown_people;
 
 /// Readings of one room at equal steps, one after the other.
 struct Stretch {
@@ -87,7 +88,8 @@ enum class Pass {
 /// five, so much later it is what the rooms' days are like. Assumed, by the moves of counters of an office, of which 76
 /// to 86 % stay for 5 min, 61 to 76 % for 10.
 inline constexpr double longest_guess_s = 300.0;
-/// (readings) 1: something is known at it or no longer before it, or (smoothed) after it.
+/// (readings) 1: something is known at it, or was known at most longest_guess_s before it; smoothed, or is known at
+/// most so long after it.
 [[nodiscard]] std::vector<char> told_readings(const Stretch& stretch, double step_s, Pass pass);
 
 /// Of each reading.

@@ -31,6 +31,8 @@ struct LogFalseTriggers {
   std::size_t n = 0;   ///< how often motion begins in them
 };
 
+inline constexpr std::size_t fewest_pulses_of_hold = 20;  ///< that tell one; assumed (10-50)
+
 struct LogSensorFacts {
   std::string name;
   double known_s = 0.0, unknown_s = 0.0;

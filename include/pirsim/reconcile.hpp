@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/bits.hpp"
 #include "pirsim/log.hpp"
 #include "pirsim/reconcile_outcome.hpp"
 #include "pirsim/scene.hpp"
@@ -16,7 +17,7 @@
 
 namespace pirsim::reconcile {
 
-inline constexpr std::uint8_t unknown_bit = 2;
+using pirsim::unknown_bit;
 
 /// The rows of one run of one trial, one after the other without a gap. The main part, which is compared in time, goes
 /// from the first to the last row in a counted phase.

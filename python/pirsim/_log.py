@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -153,4 +154,4 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
                utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
                map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),
-               people_means=found["people_means"], is_elapsed=is_elapsed, _files=tuple(files))
+               people_means=found["people_means"], is_elapsed=is_elapsed, _files=tuple(os.path.abspath(one) for one in files + ([] if map is None or is_dict else [map])))

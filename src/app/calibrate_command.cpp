@@ -68,7 +68,8 @@ void run(const CalibrateOptions& options) {
   if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
   const Log log = read_log(options.log, options.pool->inputs.verbosity);
   const double step_s = step_of(options, log);
-  const std::optional<double> hold_s = options.hold_s ? options.hold_s : calibrate::common_hold(facts_of(log));
+  const LogFacts facts = facts_of(log);
+  const std::optional<double> hold_s = options.hold_s ? options.hold_s : calibrate::common_hold(facts);
   if (hold_s && !options.hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
     std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms' (--hold)\n";
   const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
@@ -98,7 +99,7 @@ void run(const CalibrateOptions& options) {
   settings.step_s = step_s;
   calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
                                     .calibrate(std::vector{calibrate::whole_log(rows)}, days.whole);
-  calibrate::LogTraits traits = calibrate::traits_of(log);
+  calibrate::LogTraits traits = calibrate::traits_of(facts);
   if (options.hold_s) std::ranges::fill(traits.holds_s, options.hold_s);
   calibrate::remember(traits, made.counter);
   calibrate::write_calibration(options.folder, made, about);

@@ -120,15 +120,15 @@ class Outputs {
   [[nodiscard]] const control::LitDays& days() const noexcept { return days_; }
 
   void finish(const ControlOptions& options) {
-    if (lit_) {
-      flush();
-      lit_data_->finish();
-      lit_file_->commit();
-    }
     if (schedule_) {
       io::AtomicFile file(options.schedule);
       schedule_->write(file.stream());
       file.commit();
+    }
+    if (lit_) {
+      flush();
+      lit_data_->finish();
+      lit_file_->commit();
     }
   }
 

@@ -32,7 +32,7 @@ void count(const CountOptions& options) {
   const counting::Counter counter = counting::read_counter(options.counter);
   const Log log = read_log(options.log, options.verbosity);
   const calibrate::LogCounts counts = calibrate::count_log(counter, LogWindows(log, counter.settings.step_s).rows(),
-                                                           calibrate::traits_of(log), options.pass);
+                                                           calibrate::traits_of(facts_of(log)), options.pass);
   write(options, counts);
   const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
   if (!options.report.empty())
@@ -40,11 +40,6 @@ void count(const CountOptions& options) {
   tell_written({{options.output}, {options.report}}, options.verbosity);
   std::vector<Issue> warnings;
   if (!counts.warning.empty()) warnings.push_back({Severity::warning, Where{options.counter.string()}, counts.warning});
-  if (counter.sensors.empty()) {
-    warnings.push_back({Severity::warning, Where{options.counter.string()},
-                        "it doesn't tell which sensors it is for: the log's are taken for them (" +
-                            joined(counts.rows.sensors, ", ") + ")"});
-  }
   for (const std::string& remark : counts.remarks)
     warnings.push_back({Severity::warning, Where{options.counter.string()}, remark});
   tell(warnings, options.verbosity);

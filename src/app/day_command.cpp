@@ -138,6 +138,7 @@ void day(const Inputs& inputs, const DayOptions& options) {
   const std::string text = script_text(options);
   check_made_script(text, options.first_day);
   ScriptSpec script = io::parse_script(text, no_file, inputs.overrides, data_directories());
+  keep_inputs(inputs, files_read(script, {}));
   if (options.action == DayOptions::Action::print_script) {
     std::cout << (inputs.overrides.empty() ? text : io::to_yaml(script));
     require_written();

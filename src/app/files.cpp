@@ -62,6 +62,8 @@ bool collide(const NamedFile& one, const NamedFile& other) {
          });
 }
 
+std::string in_quotes(const fs::path& file) { return "'" + file.string() + "'"; }
+
 void check_ending(const NamedFile& output) {
   const std::string name = output.file.filename().string();
   const auto is_end = [&](const std::string& ending) { return name.size() > ending.size() && name.ends_with(ending); };
@@ -76,7 +78,6 @@ void check_place(const NamedFile& output) {
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorCode::io, Where{output.file.string()}, "can't write: " + why);
   };
-  const auto in_quotes = [](const fs::path& path) { return "'" + path.string() + "'"; };
   std::error_code unknown;
   const bool is_folder = !output.contents.empty();
   if (!is_folder && fs::is_directory(output.file, unknown)) refuse("it is a folder, and " + output.option + " a file");
@@ -89,7 +90,6 @@ void check_place(const NamedFile& output) {
 }
 
 [[noreturn]] void refuse(const NamedFile& one, const NamedFile& output, const char* why) {
-  const auto in_quotes = [](const fs::path& file) { return "'" + file.string() + "'"; };
   if (one.contents.empty() == output.contents.empty()) {
     throw Error(ErrorCode::usage, one.option + " and " + output.option +
                                       (one.contents.empty() ? " are one file: " : " are one folder: ") +

@@ -40,9 +40,9 @@ Log read_log(const LogInputs& inputs, Verbosity verbosity) {
                            "its times tell an offset, and no zone is named: hours of the day are taken as they are "
                            "written; name the room's zone (--time-zone Europe/Berlin)"});
   }
-  tell(log.remarks, verbosity);
   if (verbosity != Verbosity::quiet)
     std::cerr << io::name_of_input(inputs.files.front()) << " is read as " << io::form_in_words(log) << '\n';
+  tell(log.remarks, verbosity);
   return log;
 }
 

@@ -94,7 +94,6 @@ Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   const TracerKind tracer = tracer_kind(inputs.tracer);
   const Progress progress({.what = "reading and compiling " + inputs.scene.filename().string()}, of_progress);
   SceneSpec scene = read_scene(inputs);
-  keep_inputs(inputs, files_read(script, scene));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   Model model = compile(std::move(scene), std::move(script), {tracer});
@@ -145,7 +144,9 @@ const std::vector<std::string>& summary_endings() {
 }
 
 void keep_inputs(const Inputs& inputs, const std::vector<std::filesystem::path>& read) {
-  if (inputs.files != nullptr) inputs.files->keep(read);
+  if (inputs.files == nullptr)
+    throw Error(ErrorCode::internal, "a command reads files that it didn't declare (offer_sensors)");
+  inputs.files->keep(read);
 }
 
 namespace {

@@ -130,9 +130,13 @@ void require_fit(const counting::Counter& counter, const LogRows& rows, const Lo
                                     shortest_number(std::ceil(log.interval_s)) + ")");
 }
 
-/// Holds that differ.
+/// Sensors that aren't told, holds that differ.
 std::vector<std::string> remarks_of(const counting::Counter& counter, const LogTraits& log) {
   std::vector<std::string> remarks;
+  if (counter.sensors.empty() && !log.sensors.empty()) {
+    remarks.push_back("it doesn't tell which sensors it is for: the log's are taken for them (" +
+                      joined(log.sensors, ", ") + ")");
+  }
   for (std::size_t k = 0; k < log.holds_s.size(); ++k) {
     const auto own = std::ranges::find(counter.sensors, log.sensors[k]);
     if (own == counter.sensors.end() || counter.holds_s.empty()) continue;
@@ -150,9 +154,9 @@ std::vector<std::string> remarks_of(const counting::Counter& counter, const LogT
 
 }  // namespace
 
-LogTraits traits_of(const Log& log) {
-  LogTraits traits{static_cast<double>(log.interval_us) * 1e-6, {}, {}};
-  for (const LogSensorFacts& sensor : facts_of(log).sensors) {
+LogTraits traits_of(const LogFacts& facts) {
+  LogTraits traits{facts.interval_s, {}, {}};
+  for (const LogSensorFacts& sensor : facts.sensors) {
     traits.sensors.push_back(sensor.name);
     traits.holds_s.push_back(sensor.hold_s);
   }

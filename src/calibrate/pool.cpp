@@ -103,12 +103,11 @@ counting::Stretch stretch_of(const dataset::RoomDayRows& rows, double step_s) {
 }  // namespace
 
 std::optional<double> common_hold(const LogFacts& facts) {
-  constexpr std::size_t fewest_pulses = 20;  // assumed
-  constexpr double alike = 1.1;              // assumed (1.05-1.2): clocks and radios make holds so different
+  constexpr double alike = 1.1;  // assumed (1.05-1.2): clocks and radios make holds so different
   std::vector<double> holds, shortest;
   std::vector<std::string> words;
   for (const LogSensorFacts& sensor : facts.sensors) {
-    if (sensor.pulses.n < fewest_pulses) continue;
+    if (sensor.pulses.n < fewest_pulses_of_hold) continue;
     if (sensor.hold_s) holds.push_back(*sensor.hold_s);
     shortest.push_back(sensor.hold_s.value_or(sensor.pulses.floor_s));
     words.push_back(sensor.name + (sensor.hold_s ? " holds motion for " : ", whose hold isn't told, has pulses of ") +

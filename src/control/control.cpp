@@ -8,8 +8,8 @@
 #include "control/day_sums.hpp"
 #include "control/light_switch.hpp"
 #include "core/text.hpp"
+#include "pirsim/bits.hpp"
 #include "schema/areas.hpp"
-#include "schema/bits.hpp"
 #include "schema/clock.hpp"
 
 namespace pirsim::control {
@@ -17,7 +17,6 @@ namespace {
 
 constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
-constexpr std::int64_t day_s = 86400;
 
 /// Minutes, in order: those of the curve and the rule's.
 std::vector<double> delays_of(const LightSpec& light) {
@@ -424,13 +423,12 @@ void Control::begin_run() noexcept { state_->replicate.reset(); }
 LitRow Control::add(const Sample& row, std::string_view day) {
   State& state = *state_;
   const bool is_new_run = row.replicate != state.replicate || row.trial != state.trial;
-  if (is_new_run || day != state.day) {
-    state.replicate = row.replicate, state.trial = row.trial, state.day = day;
-    for (Light& light : state.lights) {
-      if (is_new_run) light.begin();
-      light.begin_day(day.empty() ? DayKind::run : DayKind::date);
-    }
+  const bool is_new_day = day.empty() ? is_new_run || !state.day.empty() : day != state.day;
+  for (Light& light : state.lights) {
+    if (is_new_run) light.begin();
+    if (is_new_day) light.begin_day(day.empty() ? DayKind::run : DayKind::date);
   }
+  if (is_new_run || is_new_day) state.replicate = row.replicate, state.trial = row.trial, state.day = day;
   const std::optional<std::int64_t> ends_s = clock_s(row);
   std::optional<double> hour;
   if (ends_s) hour = static_cast<double>(((*ends_s % day_s) + day_s) % day_s) / 3600.0;
@@ -447,15 +445,22 @@ Costs Control::finish() const {
   Costs costs{state_->rule.name, state_->window_s, {}, {}};
   for (const Light& light : state_->lights) costs.lights.push_back(light.costs(state_->people));
   for (const LightSpec& light : state_->rule.lights) {
-    for (const double delay_min : light.delays_min) {
+    const auto tell_rounding = [&](const char* what, double time, double unit_s, const char* unit) {
       const double in_rows =
-          static_cast<double>(std::llround(60.0 * delay_min / state_->window_s)) * state_->window_s / 60.0;
-      if (std::abs(in_rows - delay_min) < 1e-6) continue;
+          static_cast<double>(std::llround(unit_s * time / state_->window_s)) * state_->window_s / unit_s;
+      if (std::abs(in_rows - time) < 1e-6) return;
       costs.remarks.push_back({Severity::warning, light.where,
-                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) +
-                                   " s a delay of " + shortest_number(delay_min) + " min is one of " +
-                                   shortest_number(in_rows) + " min"});
-    }
+                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) + " s " +
+                                   what + " of " + shortest_number(time) + " " + unit + " is one of " +
+                                   shortest_number(in_rows) + " " + unit});
+    };
+    for (const double delay_min : light.delays_min) tell_rounding("a delay", delay_min, 60.0, "min");
+    if (light.night) tell_rounding("a delay at night", light.night->delay_min, 60.0, "min");
+    tell_rounding("a least_on_min", light.least_on_min, 60.0, "min");
+    if (light.together) tell_rounding("a within_s", light.together->within_s, 1.0, "s");
+    if (light.manual) tell_rounding("a switch_s", light.manual->switch_s, 1.0, "s");
+    if (light.manual) tell_rounding("a grace_s", light.manual->grace_s, 1.0, "s");
+    if (light.wave_s) tell_rounding("a wave_s", *light.wave_s, 1.0, "s");
     const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
     if (wants_clock && !state_->has_clock) {
       costs.remarks.push_back(

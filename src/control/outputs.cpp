@@ -11,8 +11,6 @@
 namespace pirsim::control {
 namespace {
 
-constexpr double day_s = 86400.0;
-
 /// No text for what isn't known.
 std::string number(double value) {
   if (std::isnan(value)) return {};

@@ -275,7 +275,6 @@ LitDays::LitDays(const RuleSpec& rule, double window_s) : window_s_(window_s) {
 }
 
 void LitDays::add(const Sample& row, const LitRow& lit) {
-  constexpr std::int64_t day_s = 86400;
   has_clock_ = has_clock_ || lit.ends_s;
   const double middle_s =
       lit.ends_s ? static_cast<double>(*lit.ends_s) - 0.5 * window_s_ : row.time_s - 0.5 * window_s_;
@@ -326,7 +325,10 @@ io::DaysChart LitDays::chart() const {
     const auto& [replicate, trial, date] = key;
     constexpr std::size_t date_length = 10;
     const std::string run = "run " + std::to_string(replicate) + ", " + trial;
-    Day::Day day{has_clock_ ? clock_text(date, 0.0).substr(0, date_length) : run, {}};
+    const bool is_shared = std::ranges::any_of(
+        days_, [&](const auto& other) { return other.first != key && std::get<2>(other.first) == date; });
+    const std::string of_date = clock_text(date, 0.0).substr(0, date_length) + (is_shared ? ", " + run : "");
+    Day::Day day{has_clock_ ? of_date : run, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
       day.lines.push_back({names_[i], runs_of(bins, i, [](const Bin& bin) {
                              const double lit = bin.lit / bin.known;

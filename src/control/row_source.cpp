@@ -60,6 +60,14 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
     const std::vector<fs::path> tables = tables_in(path);
     files_.insert(files_.end(), tables.begin(), tables.end());
   }
+  for (auto file = files_.begin(); file != files_.end(); ++file) {
+    std::error_code unknown;  // of pipes nothing is known
+    const auto is_it = [&](const fs::path& other) {
+      return fs::is_regular_file(other) && fs::equivalent(*file, other, unknown);
+    };
+    if (std::find_if(files_.begin(), file, is_it) != file)
+      throw Error(ErrorCode::usage, "'" + file->string() + "' is given twice");
+  }
   first_ = std::make_unique<io::RowReader>(files_.front());
   about_.columns = first_->format().columns();
   about_.people = first_->format().has(io::RowFormat::people) ? People::known : People::unknown;
@@ -72,6 +80,7 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
 
 void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
   Sample row;
+  std::optional<double> told_to_s;  // of a log, whose parts are given in order
   for (const fs::path& path : files_) {
     const std::unique_ptr<io::RowReader> file = first_ ? std::move(first_) : std::make_unique<io::RowReader>(path);
     const auto refuse = [&](const std::string& why) { throw Error(ErrorCode::input, {path.string()}, why); };
@@ -85,7 +94,13 @@ void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
     }
     begin();
     const bool is_log = tells_dates_alone(file->format());
-    while (file->next_of_all(row)) {
+    for (bool is_first = true; file->next_of_all(row); is_first = false) {
+      if (is_log) {
+        const auto end_s = static_cast<double>(clock_from(row.clock)->begin_s);
+        if (is_first && told_to_s && end_s - about_.window_s < *told_to_s)
+          refuse("it begins before the file given before it ends: give each part of a log once, in order of time");
+        told_to_s = end_s;
+      }
       take(row, is_log ? date_of_begin(row, about_.window_s) : std::string());
       n_missing_ += file->is_filled() ? 1 : 0;
     }

@@ -5,7 +5,7 @@
 #include "dataset/recipe.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/read/row_reader.hpp"
-#include "schema/bits.hpp"
+#include "pirsim/bits.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -47,7 +47,11 @@ RoomDayRows read_day(const fs::path& file) {
     if (read.people.empty()) {
       read.room = row.replicate;
       day = row.trial;
-      read.day = io::parse_number<int>(day).value_or(0);
+      const auto number = io::parse_number<int>(day);
+      if (!number)
+        throw Error(ErrorCode::input, reader.format().where(io::RowFormat::day),
+                    "day: expected a whole number, got '" + day + "'");
+      read.day = *number;
       for (std::size_t i = 0; i < row.bits.size(); ++i) {
         if (row.bits[i] == absent_bit) continue;
         columns.push_back(i);

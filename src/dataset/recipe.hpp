@@ -25,11 +25,11 @@ namespace pirsim::dataset {
 
 [[nodiscard]] std::string name_of(Part part);   ///< "test_days"
 [[nodiscard]] std::string room_name(int room);  ///< "room_0003"
-// Relative to the dataset's folder.
 /// Files and folders that a dataset is made of, beside its recipe, provenance and journals.
 inline constexpr std::array dataset_parts{
     "README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv", "areas.csv",
     "doors.csv", "pictures",         "rooms",     "scripts",     "rows",     "occupants",   "exports"};
+// Relative to the dataset's folder.
 [[nodiscard]] std::string room_path(int room);  ///< "rooms/room_0003.gltf"
 /// "rows/room_0003/day_01.csv"
 [[nodiscard]] std::string day_path(const std::string& folder, int room, int day, const std::string& ending);

@@ -14,8 +14,6 @@
 namespace pirsim {
 namespace {
 
-constexpr std::int64_t day_s = 86400;
-
 /// Of digits and nothing else, as many as there may be.
 std::optional<int> whole_number(std::string_view digits, std::size_t fewest, std::size_t most) {
   if (digits.size() < fewest || digits.size() > most) return std::nullopt;
@@ -104,8 +102,8 @@ std::optional<double> elapsed_seconds(const std::string& text) {
 
 std::string clock_text(std::int64_t day, double seconds) {
   const auto whole = static_cast<std::int64_t>(std::floor(seconds + 1e-9));
-  const std::int64_t in_day = whole % day_s;
-  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(day + whole / day_s))};
+  const std::int64_t in_day = (whole % day_s + day_s) % day_s;  // before the day, too
+  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(day + (whole - in_day) / day_s))};
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
                 static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), static_cast<int>(in_day / 3600),

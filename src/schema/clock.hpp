@@ -10,6 +10,8 @@
 
 namespace pirsim {
 
+inline constexpr std::int64_t day_s = 86400;
+
 /// Days since 1970-01-01 of "2026-03-02". Throws Error(input) for what is no date.
 [[nodiscard]] std::int64_t day_number(const std::string& iso_date, const Where& where);
 [[nodiscard]] bool is_working_day(std::int64_t day) noexcept;  ///< Monday to Friday

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "schema/bits.hpp"
+#include "pirsim/bits.hpp"
 
 namespace pirsim {
 namespace {

@@ -69,6 +69,7 @@ class Doubts {
     const double seconds = track.times_s[i] - track.times_s[i - 1];
     const Step step{glm::distance(track.points[i], track.points[i - 1]), seconds, track.times_s[i], &track};
     longest_step_s_ = std::max(longest_step_s_, seconds);
+    shortest_step_s_ = std::min(shortest_step_s_, seconds);
     if (fastest_.track == nullptr || step.speed() > fastest_.speed()) fastest_ = step;
     farthest_m_ = std::max(farthest_m_, glm::distance(track.points[i], track.points.front()));
   }
@@ -103,12 +104,16 @@ class Doubts {
            fixed(fastest_.speed(), 0) + " m/s. Are places metres and times seconds, and is it one person throughout?";
   }
 
-  /// Frames, as 0, 1, 2, ... of a camera, are far longer when they are taken for seconds.
+  /// Frames, as 0, 1, 2, ... of a camera, are far longer when they are taken for seconds, and milliseconds are.
   [[nodiscard]] std::optional<std::string> too_slow() const {
-    const bool is_walk = farthest_m_ >= walk_m && fastest_.speed() < slowest_walk_m_s && longest_step_s_ <= 1.5;
-    if (!is_walk) return std::nullopt;
+    constexpr double frame_s = 1.5, rare_s = 100.0,
+                     slowest_m_s = 0.03;  // assumed: of rows far apart people rest between
+    const bool are_frames = longest_step_s_ <= frame_s && fastest_.speed() < slowest_walk_m_s;
+    const bool are_ms = shortest_step_s_ >= rare_s && fastest_.speed() < slowest_m_s;
+    if (farthest_m_ < walk_m || !(are_frames || are_ms)) return std::nullopt;
     return "people cross " + fixed(farthest_m_, 1) + " m of the room, and nobody is faster than " +
-           fixed(fastest_.speed(), 2) + " m/s: the times look like frames rather than seconds";
+           fixed(fastest_.speed(), 3) + " m/s: the times look like " + (are_frames ? "frames" : "milliseconds") +
+           " rather than seconds";
   }
 
   [[nodiscard]] std::optional<std::string> in_a_corner() const {
@@ -125,7 +130,7 @@ class Doubts {
   std::size_t n_ = 0;
   Vec2 lower_{std::numeric_limits<double>::max()}, upper_{std::numeric_limits<double>::lowest()};
   Step fastest_{};
-  double longest_step_s_ = 0.0, farthest_m_ = 0.0;
+  double longest_step_s_ = 0.0, shortest_step_s_ = std::numeric_limits<double>::max(), farthest_m_ = 0.0;
 };
 
 }  // namespace

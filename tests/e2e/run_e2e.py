@@ -447,7 +447,7 @@ class Light(unittest.TestCase):
         self.assertNotIn('"people":true', (self.folder / "l.html").read_text())  # a line of them, hatched or not
         pirsim("control", both, "--report", self.folder / "b.html")
         page = (self.folder / "b.html").read_text()
-        self.assertEqual(page.count('"name":"2026-03-02"'), 2)  # a line a run
+        self.assertEqual(page.count('"name":"2026-03-02, run '), 2)  # a line a run
         self.assertIn('{"name":"people","people":true,"runs":[0,240,-1,247,255,1,255,720,-1]}', page)
 
     def test_which_delay_to_take_is_told_by_default(self):

@@ -267,7 +267,7 @@ class Database(Case):
                 self.assertEqual((path.read_bytes(), [one.name for one in self.folder.iterdir() if one.name.startswith("home")]),
                                  (before, [path.name]))
         told = run("log", path)[0]
-        self.assertIn("events of Home Assistant's database, 2026-03-02T07:00:00 to 2026-03-02T07:00:10 (10 s), 9 rows, 2 sensors", told)
+        self.assertIn("events of Home Assistant's database, 2 sensors, no counts; 2026-03-02T07:00:00 to 2026-03-02T07:00:10 (10 s), 9 rows", told)
         (self.folder / "map.yaml").write_text(run("log", path, "--print-map")[0])
         self.assertEqual(self.motion(path, "--map", self.folder / "map.yaml")[0], HOME_ROWS)
 

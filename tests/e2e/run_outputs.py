@@ -16,7 +16,8 @@ import unittest
 
 PIRSIM = DATA = None
 BYTES = b"what a user wrote\n"
-# What a command writes into its folder, of each option; test_folders_get_what_is_listed_here says whether it's true.
+# What a command writes into its folder, of each option; test_folders_get_what_is_listed_here says whether it's true where it
+# tries, run_own_room.py of calibrate.
 REPORT = "where.csv", "candidates.csv", "script_patched.yaml", "report.html", "report.json", "trail.log", "table/table.journal"
 DATASET = ("README.md", "datapackage.json", "provenance.txt", "rooms.csv", "sensors.csv", "days.csv", "effects.csv",
            "dataset.journal", "rooms/room_0001.gltf", "scripts/room_0001/day_01.yaml", "rows/room_0001/day_01.csv",

@@ -76,6 +76,10 @@ class OwnRoom(unittest.TestCase):
         self.calibrate(shards, "-q")
         self.same(shards)
 
+    def test_the_folder_has_what_outputs_are_checked_for(self):
+        self.assertEqual({file.name for file in self.made.iterdir()},
+                         {"recipe.yaml", "weights.csv", "counter.json", "calibration.json", "calibration.html", "pool"})
+
     def test_the_verdict_is_told_and_weights_add_up(self):
         numbers = json.loads((self.made / "calibration.json").read_text())
         self.assertIn(numbers["finding"], self.told)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rows, faulty and whole, given to every command that reads rows: all say the same of them, through files, pipes and
+"""Rows, faulty and whole, given to control and reconcile: all say the same of them, through files, pipes and
 standard input.
 
 Usage: run_rows.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
@@ -174,6 +174,18 @@ class Runs(Case):
         for files in ((one, other), (other, one)):
             costs, _ = self.costs(*files, delay=5)
             self.assertEqual((costs["days"], costs["lit_share"]), ("2", "0.5"))
+
+    def test_parts_of_a_log_are_given_once_and_in_order(self):
+        parts = [self.write(f"{k}.csv", "time_s,time,PIR1",
+                            [f"{i},2026-03-02T08:00:{i:02},{i % 2}" for i in range(1 + 20 * k, 21 + 20 * k)]) for k in (0, 1)]
+        costs, _ = self.costs(*parts)
+        self.assertEqual((costs["days"], costs["hours"]), ("1", "0.011111"))  # one date
+        self.assertIn("give each part of a log once, in order of time", run("control", *reversed(parts)).stderr)
+        link = self.folder / "link.csv"
+        link.symlink_to(parts[0])
+        twice = run("control", parts[0], link)
+        self.assertEqual(twice.returncode, 2)
+        self.assertIn("is given twice", twice.stderr)
 
     def test_a_gap_is_told_and_begins_anew(self):
         lines = [row(1), row(2, "0,0"), row(50, "0,0"), row(51, "0,0")]

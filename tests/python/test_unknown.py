@@ -40,6 +40,12 @@ def test_bits_are_numbers():
             _readings.as_motion(bits)
 
 
+def test_a_live_count_takes_one_reading():
+    assert _readings.as_reading([0, 1]).tolist() == [[0, 1]]
+    with pytest.raises(ValueError, match="expected one reading, got 2"):
+        _readings.as_reading([[0, 1], [1, 1]])
+
+
 def test_unknown_people_of_a_day():
     for people in ([1, None, 2, 0], [1, np.nan, 2, 0], np.ma.array([1, 7, 2, 0], mask=[0, 1, 0, 0]), [1, -1, 2, 0]):
         assert _readings.as_day(counting.Day(1, BITS, people)).people.tolist() == [1, -1, 2, 0]

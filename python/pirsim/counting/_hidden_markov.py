@@ -12,7 +12,7 @@ from .. import _core
 from .._study import PathOr, as_count, as_path, as_threads
 from ..errors import InputWarning
 from ._estimates import Estimates, estimates_of, middle_count
-from ._readings import Day, LogLike, MapLike, as_day, as_motion, readings_of
+from ._readings import Day, LogLike, MapLike, as_day, as_reading, readings_of
 
 
 class Room(NamedTuple):
@@ -41,7 +41,7 @@ class LiveCount:
     def next(self, bits: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """[count] probabilities after one more reading; NaN once nothing has been known for five minutes. bits: [sensor]
         0, 1, or 2, NaN or masked for unknown. Raises UsageError for another number of sensors."""
-        probabilities: npt.NDArray[np.float64] = self._core.next(as_motion(np.ma.atleast_2d(bits))[0])
+        probabilities: npt.NDArray[np.float64] = self._core.next(as_reading(bits)[0])
         people = int(middle_count(probabilities))
         self._people = people if people >= 0 else None
         return probabilities

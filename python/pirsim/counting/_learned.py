@@ -17,7 +17,7 @@ from ..specs import Diagnostic
 from ._estimates import Estimates, estimates_of, middle_count
 from ._features import features, windows_of
 from ._hidden_markov import as_number
-from ._readings import MOST_PEOPLE, UNKNOWN, Day, LogLike, MapLike, as_day, as_motion, readings_of
+from ._readings import MOST_PEOPLE, UNKNOWN, Day, LogLike, MapLike, as_day, as_reading, readings_of
 
 Array = npt.NDArray[np.float64]
 
@@ -79,7 +79,7 @@ class LearnedLiveCount:
 
     def next(self, bits: npt.ArrayLike) -> Array:
         """[count] probabilities after one more reading, as of HiddenMarkovCounter's LiveCount."""
-        row = as_motion(np.ma.atleast_2d(bits))
+        row = as_reading(bits)
         motion = row if self._motion is None else np.vstack([self._motion, row])
         self._motion = motion[-max(windows_of(self._counter.step_s)) - 1:]
         probabilities: Array = self._counter._probabilities(self._motion)[-1]

@@ -68,6 +68,14 @@ def as_motion(bits: npt.ArrayLike) -> Motion:
     return np.ascontiguousarray(values, dtype=np.uint8)
 
 
+def as_reading(bits: npt.ArrayLike) -> Motion:
+    """[1, sensor] of one reading. Raises ValueError."""
+    motion = as_motion(np.ma.atleast_2d(bits))
+    if len(motion) != 1:
+        raise ValueError(f"expected one reading, got {len(motion)}")
+    return motion
+
+
 def as_day(day: Day) -> Day:
     """With arrays as the module takes them. Raises ValueError."""
     motion, people = as_motion(day.motion), _known_numbers(day.people, -1)

@@ -52,11 +52,11 @@ LogLengths lengths_of(const std::vector<LogRun>& runs, std::int32_t state) {
 }
 
 std::optional<double> hold_told_by(const LogLengths& pulses) {
-  constexpr std::size_t fewest = 20;
   constexpr double least_share = 0.3;  // that is as long as the shortest; assumed (0.2-0.5)
   constexpr double shortest_s = 0.5;   // assumed: detectors' own pulses are shorter (0.3-1)
   constexpr double per_s = 10.0;       // no log tells more
-  if (pulses.n < fewest || pulses.floor_share < least_share || pulses.floor_s < shortest_s) return std::nullopt;
+  if (pulses.n < fewest_pulses_of_hold || pulses.floor_share < least_share || pulses.floor_s < shortest_s)
+    return std::nullopt;
   return std::round(per_s * pulses.floor_s) / per_s;
 }
 

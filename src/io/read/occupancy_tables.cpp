@@ -24,10 +24,19 @@ void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaul
   }
 }
 
+std::optional<std::size_t> column_called(const CsvTable& table, std::string_view name, std::string_view other,
+                                         Diagnostics& faults) {
+  const auto by_name = table.column(name), by_other = table.column(other);
+  if (by_name && by_other)
+    faults.error(table.header_place(), "columns '" + std::string(name) + "' and '" + std::string(other) +
+                                           "' mean the same: give one of them");
+  return by_name ? by_name : by_other;
+}
+
 PersonColumns::PersonColumns(const CsvTable& table, Diagnostics& faults)
-    : id(table.column("person") ? table.column("person") : table.column("id")),
-      x(table.column("x_m") ? table.column("x_m") : table.column("x")),
-      z(table.column("z_m") ? table.column("z_m") : table.column("z")) {
+    : id(column_called(table, "person", "id", faults)),
+      x(column_called(table, "x_m", "x", faults)),
+      z(column_called(table, "z_m", "z", faults)) {
   if (!id) id = table.required_column("person", faults);
 }
 

@@ -27,6 +27,9 @@ void read_positions(const CsvTable& table, PositionsSpec& positions, Diagnostics
 /// A study's rows have many runs, and then time begins anew.
 void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults);
 
+/// By either name; both are a fault.
+[[nodiscard]] std::optional<std::size_t> column_called(const CsvTable& table, std::string_view name,
+                                                       std::string_view other, Diagnostics& faults);
 /// Columns of a person, and of where they are on the floor, if the table has them.
 struct PersonColumns {
   PersonColumns(const CsvTable& table, Diagnostics& faults);

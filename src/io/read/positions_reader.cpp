@@ -17,7 +17,7 @@ class PositionsReader {
 
   void read() {
     const TimeColumn time(table_, {}, faults_);
-    const auto heading = table_.column("heading") ? table_.column("heading") : table_.column("heading_deg");
+    const auto heading = column_called(table_, "heading", "heading_deg", faults_);
     if (!columns_.x) static_cast<void>(table_.required_column("x", faults_));
     if (!columns_.z) static_cast<void>(table_.required_column("z", faults_));
     require_one_run(table_, time, repeated_);

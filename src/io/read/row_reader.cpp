@@ -9,10 +9,11 @@
 #include "io/files/atomic_file.hpp"
 #include "io/files/line_reader.hpp"
 #include "io/read/split_fields.hpp"
+#include "pirsim/bits.hpp"
 #include "pirsim/csv.hpp"
-#include "schema/bits.hpp"
 #include "schema/clock.hpp"
 #include "schema/columns.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -87,6 +88,8 @@ void RowFormat::name_columns(const Where& header) {
   };
   if (names_.size() == 1 && names_.front().find_first_of(";\t") != std::string::npos)
     throw Error(ErrorCode::input, header, "columns must be separated by commas, not by semicolons or tabs");
+  if (names_.size() > limits::log_columns)
+    throw Error(ErrorCode::input, header, "more than " + std::to_string(limits::log_columns) + " fields");
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const std::string& name = names_[i];
     if (field_of(name).value_or(i) != i) faults.error(place(i), "column '" + name + "' appears twice");
@@ -116,7 +119,8 @@ void RowFormat::name_columns(const Where& header) {
   refuse_slips(faults);
   if (!at_[time_s] && !faults.has_errors()) {
     faults.error(header, "these aren't rows of a run or a dataset: column 'time_s' is missing" +
-                             near_or_all("time_s", names_) + "; a log is given by --log");
+                             near_or_all("time_s", names_) +
+                             "; if it is a log, say so (control --log, reconcile --map)");
   }
   if (sensors_.empty() && !faults.has_errors()) faults.error(header, "none of the columns is a sensor's");
   faults.throw_if_errors();
@@ -464,9 +468,7 @@ bool RowReader::next_of_all(Sample& row) {
   row = behind_gap_;
   row.time_s -= before_s;
   if (!row.clock.empty()) {
-    const double whole_s = std::ceil(before_s);
-    if (const auto clock = clock_from(row.clock))
-      row.clock = RunClock{clock->begin_s - static_cast<std::int64_t>(whole_s)}.text(whole_s - before_s);
+    if (const auto clock = clock_from(row.clock)) row.clock = clock->text(-before_s);
   }
   row.people = unknown_people;
   for (int& people : row.people_of_areas) people = people == absent_people ? absent_people : unknown_people;

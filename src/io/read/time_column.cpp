@@ -16,6 +16,8 @@ TimeColumn::TimeColumn(const CsvTable& table, const std::string& wanted, Diagnos
       const auto column = column_ ? std::nullopt : table.column(name);
       if (column && !(has_rows && table.text(0, *column).empty())) column_ = column;
     }
+    if (table.column("t") && table.column("time_s"))
+      faults.error(table.header_place(), "columns 't' and 'time_s' mean the same: give one of them");
     const auto date = table.column("Date"), time = table.column("Time");
     if (!column_ && date && time) column_ = time, date_ = date;
     if (!column_) {

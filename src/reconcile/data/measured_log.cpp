@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "io/files/line_reader.hpp"
 #include "io/log/home_database.hpp"
+#include "io/log/log_words.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/log_facts.hpp"
 
@@ -198,14 +199,13 @@ bool is_log(const std::filesystem::path& file) {
   const std::vector<std::string> fields = fields_of(*line);
   const auto has = [&](std::string_view name) { return std::ranges::find(fields, name) != fields.end(); };
   if (has("time_s") || (has("sensor") && (has("seconds") || has("real")))) return false;
-  constexpr std::array<std::string_view, 10> times{"time",         "date",           "timestamp", "datetime",
-                                                   "last_changed", "last_updated",   "entity_id", "date_time",
-                                                   "start",        "last_updated_ts"};
+  const auto is_time = [](const std::string& name) { return io::what_name_says(name) == io::NameSays::time; };
   // "[2026-01-25 10:20:47] info: ..." of programs' text logs, HOBO's "Plot Title: ..."
   const bool begins_with_time = !line->empty() && std::isdigit(static_cast<unsigned char>(line->front())) != 0;
   const bool is_of_a_program =
       line->starts_with('[') || line->starts_with("Zigbee2MQTT") || fields.front().starts_with("plottitle:");
-  return begins_with_time || is_of_a_program || std::ranges::any_of(times, has);
+  return begins_with_time || is_of_a_program || has("entity_id") || has("start") ||
+         std::ranges::any_of(fields, is_time);
 }
 
 Measured measured_of(const Log& log, const StudyFrame& frame, std::optional<std::int64_t> begin_s) {

@@ -115,6 +115,7 @@ TEST_CASE("Nobody is in two places at once") {
   refused("time_s,person,seat\n1,a,S1\n1,b,S2\n2,a,S1\n2,a,S3\n2,b,S2\n",
           "c.csv:5:1: error: 'a' has another row of this time: nobody is in two places at once", "places: c.csv");
   refused("time_s,person,seat\n1,a,S1\n2,,S2\n", "c.csv:3:3: error: person: expected a name", "places: c.csv");
+  refused("time_s,id,x,z,x_m\n1,a,3,-1,3\n", "columns 'x_m' and 'x' mean the same", "positions: c.csv");
   refused("time_s,id,x,z\n1,a,3,-1\n2,,3,-1\n", "c.csv:3:3: error: id: expected a name", "positions: c.csv");
   CHECK(occupancy_of("time_s,person,seat\n1,a,S1\n1,b,S1\n2,a,S1\n3,a,S2\n", "places: c.csv").places->stays.size() ==
         3);

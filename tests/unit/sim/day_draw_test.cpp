@@ -363,6 +363,8 @@ TEST_CASE("Clock times go on across midnight, months and the hour that summer ti
   CHECK(clock_text(monday, 0.0) == "2026-03-02T00:00:00");
   CHECK(clock_text(monday, 86399.0) == "2026-03-02T23:59:59");
   CHECK(clock_text(monday, 86400.0) == "2026-03-03T00:00:00");
+  CHECK(clock_text(monday, -30.0) == "2026-03-01T23:59:30");
+  CHECK(clock_text(monday, -86400.0) == "2026-03-01T00:00:00");
   CHECK(clock_text(day_number("2026-03-29", {}), 2.5 * hour_s) == "2026-03-29T02:30:00");
   CHECK(clock_text(day_number("2028-02-28", {}), 25.0 * hour_s) == "2028-02-29T01:00:00");
   CHECK(clock_text(day_number("2026-12-31", {}), 86400.0) == "2027-01-01T00:00:00");
