@@ -273,11 +273,11 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   const LogShape& shape = file.shape();
   map.form = shape.form;
   map.time = {shape.names[shape.time.first]};
-  if (shape.time.second) map.time.push_back(shape.names[*shape.time.second]);
+  for (const std::size_t column : shape.time.more) map.time.push_back(shape.names[column]);
   map.dates = shape.time.order;
   if (shape.end) {
     map.end = {shape.names[shape.end->first]};
-    if (shape.end->second) map.end.push_back(shape.names[*shape.end->second]);
+    for (const std::size_t column : shape.end->more) map.end.push_back(shape.names[column]);
   }
   if (shape.form != LogMap::Form::wide) {
     map.sensor_column = shape.names[shape.sensor];

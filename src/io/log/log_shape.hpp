@@ -7,16 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "io/log/log_head.hpp"
 #include "io/log/log_timer.hpp"
 #include "io/log/log_tracks.hpp"
 #include "pirsim/log.hpp"
 
 namespace pirsim::io {
-
-struct HeadLine {
-  std::string text;
-  int line = 0;
-};
 
 /// How the columns of one file are to be read.
 struct LogShape {

@@ -37,10 +37,9 @@ LogTimer::LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s)
     : columns_(columns), zone_(zone), shift_us_(std::llround(shift_s * 1e6)) {}
 
 LogTimer::Read LogTimer::read(std::span<const std::string_view> fields) {
-  if (!columns_.second) return read_text(fields[columns_.first]);
+  if (columns_.more.empty()) return read_text(fields[columns_.first]);
   joined_.assign(fields[columns_.first]);
-  joined_ += ' ';
-  joined_ += fields[*columns_.second];
+  for (const std::size_t column : columns_.more) (joined_ += ' ') += fields[column];
   return read_text(joined_);
 }
 

@@ -1,6 +1,7 @@
 // From a row's time stamp to a moment. Private to io.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,11 +18,16 @@ namespace pirsim::io {
 /// Which columns tell the time, and how.
 struct TimeColumns {
   std::size_t first = 0;
-  std::optional<std::size_t> second;  ///< time of day, of a date in the first
+  std::vector<std::size_t> more{};  ///< what follows the first: a time of day, AM or PM, an offset
   Stamp::Kind kind = Stamp::Kind::local;
   double unit_us = 1e6;                             ///< of numbers
   enum class Zero { epoch, own } zero = Zero::own;  ///< of numbers: what they count from
   LogMap::Dates order = LogMap::Dates::found;
+
+  [[nodiscard]] std::size_t last() const { return more.empty() ? first : std::max(first, std::ranges::max(more)); }
+  [[nodiscard]] bool has(std::size_t column) const {
+    return column == first || std::ranges::find(more, column) != more.end();
+  }
 };
 
 /// What numbers of this size count, by the name of their column if they are small: seconds, milli-, micro- or
