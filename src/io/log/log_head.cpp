@@ -15,13 +15,16 @@
 namespace pirsim::io {
 namespace {
 
-/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers.
+/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers. "UTC"
+/// beside a date names nothing.
 bool is_header(const std::vector<std::string>& fields) {
   const auto is_value = [](const std::string& field) {
     return parse_stamp(field, LogMap::Dates::found) || order_of_date(field);
   };
+  const auto is_moment = [&](const std::string& field) { return is_value(field) && !is_number(field); };
   const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
-  return std::ranges::none_of(fields, is_value) || std::ranges::any_of(fields, is_time);
+  return std::ranges::none_of(fields, is_value) ||
+         (std::ranges::any_of(fields, is_time) && std::ranges::none_of(fields, is_moment));
 }
 
 std::vector<std::string> fields_of(const HeadLine& line, char separator, const std::string& file) {

@@ -65,8 +65,7 @@ std::vector<std::string> read_time(YamlMap& map, const std::string& key) {
     columns.push_back(node->text(map.faults(), key));
   }
   if (columns.empty() || columns.size() > 3) {
-    map.faults().error(node->where(),
-                       key + ": expected a column, or those of date, time, and AM or PM or an offset");
+    map.faults().error(node->where(), key + ": expected a column, or those of date, time, and AM or PM or an offset");
   }
   return columns;
 }

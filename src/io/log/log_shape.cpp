@@ -36,6 +36,7 @@ class Finder {
       table_.refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
+      if (map_.form == LogMap::Form::found) require_events(*events);
       shape.sensor = events->sensor;
       shape.state = events->state;
     } else {
@@ -199,10 +200,8 @@ class Finder {
         table_.refuse("a map of events names both columns, sensor and state");
       return SensorAndState{table_.named(map_.sensor_column), table_.named(map_.state_column)};
     }
-    const auto is_column = [&](const std::string& name) {
-      return std::ranges::find(table_.names, name) != table_.names.end();
-    };
-    const bool names_columns = std::ranges::any_of(told_names(), is_column);
+    const bool names_columns =
+        std::ranges::any_of(told_names(), [&](const std::string& name) { return is_called(name); });
     const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
     if (map_.form == LogMap::Form::found && is_told_wide) return std::nullopt;
     if (table_.header_line == 0) {
@@ -247,6 +246,27 @@ class Finder {
       refuse_pairs("several columns hold states of each '" + table_.names[sensor] + "'", pairs);
     }
     return SensorAndState{sensor, states.front()};
+  }
+  /// Names that return in step, mostly with the same state, are readings, which hold for the time before them.
+  void require_events(const SensorAndState& pair) const {
+    constexpr std::size_t few_rows = 8;
+    std::map<std::string_view, std::vector<StateRow>> by_name;
+    for (std::size_t i = 0; i < table_.rows.size(); ++i) {
+      if (times_[i]) by_name[table_.rows[i][pair.sensor]].push_back({*times_[i], {cell(i, pair.state)}});
+    }
+    std::size_t n_readings = 0, n_others = 0;
+    for (const auto& [name, rows] : by_name) {
+      if (rows.size() < few_rows) continue;
+      const RowsProof proof = proof_of_rows(rows);
+      std::size_t n_same = 0;
+      for (std::size_t i = 1; i < rows.size(); ++i) n_same += rows[i].states == rows[i - 1].states ? 1 : 0;
+      (proof.are == RowsProof::Are::readings && 2 * n_same > rows.size() ? n_readings : n_others) += rows.size();
+    }
+    if (n_readings <= n_others) return;
+    table_.refuse_with(
+        "each name returns in step, and mostly nothing changed: these are readings, each of the time before it, which "
+        "are read from a table with a column a sensor; or events with a heartbeat",
+        {in_map(pair)});
   }
   enum class Proof { none, open, given };
   /// Whether rows tell that `pair` are sensors and their states, though no name says so.
@@ -300,7 +320,7 @@ class Finder {
     if (given.size() > 1) refuse_pairs("several columns may name sensors, or hold their states", given);
     if (open.empty()) return std::nullopt;
     table_.refuse_with("'" + table_.names[open.front().sensor] + "' may name sensors, whose events these are, or not",
-                {in_map(open.front()), "form: wide"});
+                       {in_map(open.front()), "form: wide"});
   }
 
   // Wide logs.
@@ -331,8 +351,7 @@ class Finder {
   }
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
-    const bool is_ours = std::ranges::find(table_.names, "time_s") != table_.names.end();
-    return is_of_area(column) || (is_ours && is_column_name(table_.names[column]));
+    return is_of_area(column) || (is_called("time_s") && is_column_name(table_.names[column]));
   }
   /// Counts the people of a part of the room, not all of them, or is a door's.
   [[nodiscard]] bool is_of_area(std::size_t column) const {
@@ -366,28 +385,45 @@ class Finder {
       }
     }
     if (counts.size() > 1) {
-      table_.refuse_with("'" + table_.names[counts[0]] + "' and '" + table_.names[counts[1]] + "' may both count the people",
-                  {people_map(counts[0]), people_map(counts[1]), "people: none"});
+      table_.refuse_with(
+          "'" + table_.names[counts[0]] + "' and '" + table_.names[counts[1]] + "' may both count the people",
+          {people_map(counts[0]), people_map(counts[1]), "people: none"});
     }
     if (counts.size() == 1) shape.people = counts.front();
     if (presences.size() == 1 && counts.empty() && !sensors.empty() && map_.sensors.empty()) {
       const std::string name = quoted_yaml(table_.names[presences.front()]);
       table_.refuse_with("'" + table_.names[presences.front()] + "' may be a sensor, or tell whether anybody is there",
-                  {"people: none", "people: {column: " + name + ", means: presence}"});
+                         {"people: none", "people: {column: " + name + ", means: presence}"});
     }
   }
   void find_sensors(LogShape& shape) const {
     for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(table_.named(sensor.in_log));
     if (!shape.sensors.empty()) return;
+    const bool are_ours = is_called("time_s");
+    const bool is_beside_motion = has_motion();
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (time_.has(i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i))
-        continue;
+      if (time_.has(i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i)) continue;
       // Beside sure ones, devices of other kinds are none, nor are flags and numbers that never change.
       const bool may_be_flag = says(i) == NameSays::other_device || says(i) == NameSays::sensor ||
                                (says(i) == NameSays::nothing && known_states(i).size() < 2);
       if (is_told_by_count(i, shape) || (may_be_flag && has_sure_sensors())) continue;
+      if (says(i) == NameSays::nothing && is_beside_motion && !are_ours) {
+        shape.doubtful.push_back(table_.names[i]);
+        continue;
+      }
       shape.sensors.push_back(i);
     }
+  }
+  [[nodiscard]] bool is_called(const std::string& name) const {
+    return std::ranges::find(table_.names, name) != table_.names.end();
+  }
+  /// Beside what is called motion or presence, other states may be the truth, or doors.
+  [[nodiscard]] bool has_motion() const {
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      const bool is_called_so = says(i) == NameSays::motion || says(i) == NameSays::presence;
+      if (!time_.has(i) && is_called_so && has_states(i) && !is_bookkeeping(i)) return true;
+    }
+    return false;
   }
   [[nodiscard]] bool has_sure_sensors() const {
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
@@ -416,7 +452,7 @@ class Finder {
         if (!are_opposites(rows, a, b)) continue;
         const std::string &one = table_.names[shape.sensors[a]], &other = table_.names[shape.sensors[b]];
         table_.refuse_with("'" + one + "' is always on when '" + other + "' is off: one of them is no sensor",
-                    {"sensors: [" + quoted_yaml(one) + "]", "sensors: [" + quoted_yaml(other) + "]"});
+                           {"sensors: [" + quoted_yaml(one) + "]", "sensors: [" + quoted_yaml(other) + "]"});
       }
     }
   }
@@ -447,7 +483,7 @@ class Finder {
       const Cells cells = cells_of(rows);
       if (cells == Cells::scattered) {
         table_.refuse_with("many cells are empty: their states may be unchanged, or unknown",
-                    {"empty: unchanged", "empty: unknown"});
+                           {"empty: unchanged", "empty: unknown"});
       }
       shape.empty = cells == Cells::pivot ? LogMap::Empty::unchanged : LogMap::Empty::unknown;
     }
@@ -493,11 +529,11 @@ class Finder {
     find_sensors(shape);
     const bool are_of_sentence = table_.header_line == 0 && are_words_ && map_.sensors.empty();
     if (shape.sensors.empty() || are_of_sentence) {
-      table_.refuse((are_of_sentence ? "its lines are words, not a table with a column a sensor"
-                              : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
-             table_.columns_in_words() +
-             "; name the sensors in a map, or the columns of events: " +
-             settling_map("form: events, sensor: COLUMN, state: COLUMN"));
+      table_.refuse((are_of_sentence
+                         ? "its lines are words, not a table with a column a sensor"
+                         : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
+                    table_.columns_in_words() + "; name the sensors in a map, or the columns of events: " +
+                    settling_map("form: events, sensor: COLUMN, state: COLUMN"));
     }
     require_no_opposites(shape);
     const LogTimer timer(shape.time, nullptr, 0.0);

@@ -56,7 +56,6 @@ class LogTimer {
  private:
   [[nodiscard]] Read from(const Stamp& stamp);
   [[nodiscard]] Read in_zone(std::int64_t local_us);
-  [[nodiscard]] std::int64_t after_midnight(std::int64_t us);
   void note_offset(std::int64_t us, std::int32_t offset_s);
 
   TimeColumns columns_;
@@ -66,7 +65,6 @@ class LogTimer {
   std::vector<LogOffset> seen_;                           ///< of stamps that tell theirs, where it changes
   enum class Pass { first, second } pass_ = Pass::first;  ///< of an hour that there is twice
   std::int64_t last_local_us_ = 0;
-  std::int64_t days_us_ = 0;  ///< of times of day alone: the midnights that went by
 };
 
 }  // namespace pirsim::io

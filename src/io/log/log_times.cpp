@@ -27,9 +27,7 @@ std::optional<Stamp::Kind> kind_of_most(const KindCounts& n, std::size_t n_rows)
   return all_kinds[static_cast<std::size_t>(most - n.begin())];
 }
 
-bool is_moment(std::optional<Stamp::Kind> kind) {
-  return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local;
-}
+bool is_moment(std::optional<Stamp::Kind> kind) { return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local; }
 
 std::string in_map(const TimeColumns& time, const std::vector<std::string>& names) {
   if (time.more.empty()) return "time: " + quoted_yaml(names[time.first]);
@@ -66,8 +64,8 @@ LogMap::Dates TimeFinder::order_in(std::size_t column) const {
   std::vector<std::string> maps{"dates: day_first"};
   if (year_last == LogMap::Dates::found) maps.push_back("dates: month_first");
   if (!is_year_last) maps.push_back("dates: year_first");
-  table_.refuse(with_maps(
-      "'" + table_.rows.front()[column] + "' can be several dates, and no other one tells which", maps));
+  table_.refuse(
+      with_maps("'" + table_.rows.front()[column] + "' can be several dates, and no other one tells which", maps));
 }
 
 TimeColumns TimeFinder::with_date(TimeColumns time) const {
@@ -268,8 +266,7 @@ TimeColumns TimeFinder::find(const std::vector<std::string>& told) const {
     return found;
   };
   const Columns dates = of_kind(Stamp::Kind::date), hours = of_kind(Stamp::Kind::time_of_day);
-  if (const auto found = moments(columns, dates, hours); !found.empty())
-    return with_rest(surest(found), columns);
+  if (const auto found = moments(columns, dates, hours); !found.empty()) return with_rest(surest(found), columns);
   std::vector<Candidate> numbers = own_numbers(columns);
   if (numbers.empty() && !told.empty()) {
     for (const std::size_t i : of_kind(Stamp::Kind::number)) numbers.push_back({column_of(i, Stamp::Kind::number)});

@@ -117,6 +117,7 @@ NameSays what_name_says(std::string_view name) {
   if (is_one_of(states, word)) return NameSays::state;
   if (word == "count") return NameSays::count;
   const std::vector<std::string> words = words_of_name(name);
+  if (words.size() > 1 && words.front() == "g") return NameSays::nothing;  // openHAB's gMotion, a group
   const bool counts_something = std::ranges::find(words, "count") != words.end();
   constexpr std::array countable{"occup", "presence", "person"};
   if (begins_with_one_of(words, counts) || (counts_something && begins_with_one_of(words, countable)))
@@ -130,8 +131,10 @@ NameSays what_name_says(std::string_view name) {
 
 int rank_as_time(std::string_view name) {
   constexpr std::array surest{"time", "timestamp", "ts", "last_changed"};
-  if (is_one_of(surest, small(name))) return 3;
-  return what_name_says(name) == NameSays::time ? 2 : 1;
+  constexpr std::array late{"received", "created_at", "last_updated"};
+  const std::string word = small(name);
+  if (is_one_of(surest, word)) return 3;
+  return what_name_says(name) == NameSays::time && !is_one_of(late, word) && !word.ends_with("_ts") ? 2 : 1;
 }
 
 std::string quoted_yaml(const std::string& text) {
