@@ -264,6 +264,7 @@ std::string compared(const Case& one, const Truth& truth, const Log& log) {
       n_wrong += state != log_state::unknown && state != (truth.is_on(of, from, from + window) ? 1 : 0) ? 1 : 0;
     }
   }
+  if (n_all == 0 && truth.end > 300 * s) return "no window of its time";
   if (n_wrong > 0) return std::to_string(n_wrong) + " wrong windows of " + std::to_string(n_all);
   if (20 * n_unknown > (one.loses_rows ? 4 : 1) * n_all + 60)
     return std::to_string(n_unknown) + " unknown windows of " + std::to_string(n_all);
