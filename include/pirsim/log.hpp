@@ -31,8 +31,8 @@ struct LogMap {
     readings,  ///< of a wide log: a row every interval, whose values hold for that interval
     changes    ///< a row whenever something changed, whose values hold until the next row
   };
-  enum class Dates { found, month_first, day_first };  ///< of 12/01/2017
-  enum class Stamps { end, begin };                    ///< which end of a reading its time stamp tells
+  enum class Dates { found, month_first, day_first, year_first };  ///< of 12/01/2017, 12-01-17
+  enum class Stamps { end, begin };                                ///< which end of a reading its time stamp tells
   enum class Empty {
     found,
     unknown,   ///< an empty cell tells that the state isn't known
@@ -58,7 +58,8 @@ struct LogMap {
   Form form = Form::found;
   Rows rows = Rows::found;
   Empty empty = Empty::found;     ///< of a wide log: what an empty cell means
-  std::vector<std::string> time;  ///< a column, or those of date and time; empty: found. Of intervals their begin
+  std::vector<std::string> time;  ///< a column, or those of date, time, and AM or PM or an offset; empty: found. Of
+                                  ///< intervals their begin
   std::vector<std::string> end;   ///< of intervals, as `time`
   std::string sensor_column;      ///< of events and intervals
   std::string state_column;       ///< of events; intervals may have one

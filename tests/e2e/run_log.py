@@ -91,7 +91,7 @@ class Inputs(Case):
         self.assertEqual(self.rows(log, "--map", chosen, "--window", 10),
                          "time_s,people,PIR2,PIR1\n10,0,1,0\n20,2,1,1\n30,3,0,0\n")
         for text, told in (("sensors: {P: lefd}", "there is no column 'lefd' (did you mean 'left'?)"),
-                           ("people: m", "there is no column 'm'"), ("time: [t, n, left]", "map.yaml:2:7: error: time: expected a column"),
+                           ("people: m", "there is no column 'm'"), ("time: [t, n, left, right]", "map.yaml:2:7: error: time: expected a column"),
                            ("sensor: {A: left}", "map.yaml:2:9: error"), ("senors: [left]", "did you mean 'sensors'?"),
                            ("time_zone: Europe/Berlim", "did you mean 'Europe/Berlin'?"), ("form: tall", "map.yaml:2:7"),
                            ("interval_s: -1", "interval_s"), ("sensors: {A: left, B: left}", "map.yaml:2:23: error: sensors: 'left' is named twice")):
@@ -179,7 +179,7 @@ REFUSED = {
     "an unset clock": (b"time,A\n1970-01-01T00:00:05,0\n1970-01-01T00:00:06,1\n", "log:2:1: error: '1970-01-01T00:00:05' is in the year 1970"),
     "a far year": (b"time,A\n9999-12-31T00:00:00,0\n9999-12-31T00:00:01,1\n", "in the year 9999"),
     "a number that is no time": (b"time,A\n1e300,0\n1e301,1\n", "log:2:1: error: 1e+300 is too large"),
-    "a date that may be two": (b"Date,Time,A\n01/02/2017,10:00:00,0\n01/02/2017,10:00:30,1\n", "say `dates: month_first`"),
+    "a date that may be two": (b"Date,Time,A\n01/02/2017,10:00:00,0\n01/02/2017,10:00:30,1\n", "{pirsim_log: 1, dates: month_first}"),
     "duplicates and steps back": (b"time,A\n1,0\n1,0\n2,1\n2,0\n3,0\n4,0\n", "log:3:1: error: 2 of 6 rows are no later than rows before"),
     "two forms": (b"time,A\n0,0\n100,1\n200,0\n", "{pirsim_log: 1, rows: readings}, or {pirsim_log: 1, rows: changes}"),
     "one reading": (b"time,A\n5,1\n", "one reading alone"),

@@ -91,6 +91,14 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
   values_.resize(shape_.sensors.size(), log_state::unknown);
   if (shape_.people) values_.push_back(log_state::unknown_count);
   reading.rows = shape_.rows;
+  reading.events.begin_file();
+  for (const std::string& name : shape_.doubtful) {
+    remark("left out " + name, shape_.header_line, [&] {
+      return "column '" + name +
+             "' holds states, but isn't called motion, as others are: it is left out; if it is a sensor, name all of "
+             "them in a map (sensors)";
+    });
+  }
   if (shape_.rows != LogMap::Rows::readings) return;
   if (shape_.cadence.interval_us <= 0) refuse_head();
   readings_.emplace(shape_.cadence, values_);
@@ -251,7 +259,7 @@ void LogFile::read() {
   };
   while (database_ || text_ || is_ruled_) {
     const auto line = next_line();
-    if (!line) return;
+    if (!line) return finish();
     rows.assign(text_ ? 0 : 1, *line);
     if (text_) text_->read(*line, rows, reading_.remarks);
     for (const HeadLine& row : rows) take(row.text, row.line);
@@ -262,7 +270,14 @@ void LogFile::read() {
     take(*line, lines_->where().line);
     tell();
   }
+  finish();
+}
+
+void LogFile::finish() {
   require_order();
+  if (shape_.form != LogMap::Form::wide || readings_ || n_rows_ == 0) return;
+  for (const std::size_t column : shape_.sensors)  // until its last row, though that may change nothing
+    reading_.events.note(*reading_.events.track(shape_.names[column]), last_us_);
 }
 
 /// A table whose rows often aren't later than those before them has another form.
@@ -427,7 +442,10 @@ void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::in
 }
 
 EventTracks::Track* LogFile::track_of_row(int line) {
-  EventTracks::Track* track = reading_.events.track(fields_[shape_.sensor]);
+  std::string_view& name = fields_[shape_.sensor];
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  while (name.ends_with(' ')) name.remove_suffix(1);
+  EventTracks::Track* track = reading_.events.track(name);
   if (track == nullptr) {
     fault("sensors", line, shape_.sensor,
           [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
@@ -459,10 +477,10 @@ void LogFile::take_interval(std::int64_t us, int line) {
 }
 
 void LogFile::take_event(std::int64_t us, int line) {
-  const std::string_view name = fields_[shape_.sensor], text = fields_[*shape_.state];
-  const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
   EventTracks::Track* track = track_of_row(line);
   if (track == nullptr) return;
+  const std::string_view name = fields_[shape_.sensor], text = fields_[*shape_.state];
+  const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
   const auto value = is_people ? read_count(text) : read_state(text);
   const std::int32_t unknown = is_people ? log_state::unknown_count : log_state::unknown;
   if (!value) return take_odd_event(*track, us, unknown, line);

@@ -74,6 +74,7 @@ class LogFile {
   [[nodiscard]] LogMap map_of_head() const;
   [[noreturn]] void refuse_head();
   void require_order() const;
+  void finish();
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
   void take_readings(std::int64_t us, int line);

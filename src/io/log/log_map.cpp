@@ -28,7 +28,8 @@ const Names<LogMap::Rows>& kinds_of_rows() {
 }
 const Names<LogMap::Dates>& orders() {
   static const Names<LogMap::Dates> names{{"month_first", LogMap::Dates::month_first},
-                                          {"day_first", LogMap::Dates::day_first}};
+                                          {"day_first", LogMap::Dates::day_first},
+                                          {"year_first", LogMap::Dates::year_first}};
   return names;
 }
 const Names<LogMap::Stamps>& stamps() {
@@ -53,7 +54,7 @@ const std::string& word(const Names<Value>& names, Value value) {
   return none;
 }
 
-/// `time: stamp`, or `time: [Date, Time]`.
+/// `time: stamp`, `time: [Date, Time]`, or `time: [Date, Time, AmPm]`.
 std::vector<std::string> read_time(YamlMap& map, const std::string& key) {
   const auto node = map.child(key);
   if (!node) return {};
@@ -63,8 +64,9 @@ std::vector<std::string> read_time(YamlMap& map, const std::string& key) {
   } else {
     columns.push_back(node->text(map.faults(), key));
   }
-  if (columns.empty() || columns.size() > 2)
-    map.faults().error(node->where(), key + ": expected a column, or those of date and time");
+  if (columns.empty() || columns.size() > 3) {
+    map.faults().error(node->where(), key + ": expected a column, or those of date, time, and AM or PM or an offset");
+  }
   return columns;
 }
 
@@ -196,7 +198,9 @@ std::string to_yaml(const LogMap& map) {
   };
   const auto time = [&](const char* key, const std::vector<std::string>& columns) {
     if (columns.size() == 1) text(key, columns.front());
-    if (columns.size() == 2) line(key, "[" + quoted_yaml(columns[0]) + ", " + quoted_yaml(columns[1]) + "]");
+    std::vector<std::string> quoted;
+    std::ranges::transform(columns, std::back_inserter(quoted), quoted_yaml);
+    if (columns.size() > 1) line(key, "[" + joined(quoted, ", ") + "]");
   };
   const auto seconds = [&](const char* key, const LogMap::Seconds& value) {
     if (value.each.empty()) return number(key, value.all);

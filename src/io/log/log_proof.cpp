@@ -91,6 +91,48 @@ class Steps {
   bool is_fine_ = false;     ///< stamps of whole seconds or minutes don't make such a median by themselves
 };
 
+/// A heartbeat, and rows between its beats that change something. Beats come at a clock's steps, or a step after any
+/// row.
+enum class Beat { none, perhaps, sure };
+Beat beat_of(std::span<const StateRow> rows) {
+  struct Row {
+    bool is_changed;
+    std::int64_t after_any, after_beat;
+  };
+  std::vector<Row> found;
+  std::size_t n_changed = 0;
+  std::int64_t beat_us = rows.front().us;
+  bool are_seconds = true;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool is_changed = rows[i].states != rows[i - 1].states;
+    found.push_back({is_changed, rows[i].us - rows[i - 1].us, rows[i].us - beat_us});
+    if (!is_changed) beat_us = rows[i].us;
+    n_changed += is_changed ? 1 : 0;
+    are_seconds = are_seconds && rows[i].us % us_per_s == 0;
+  }
+  constexpr std::size_t fewest = 4;
+  if (n_changed == 0 || found.size() - n_changed < fewest) return Beat::none;
+  for (const auto after : {&Row::after_any, &Row::after_beat}) {
+    std::vector<std::int64_t> steps;
+    for (const Row& row : found) {
+      if (!row.is_changed) steps.push_back(row.*after);
+    }
+    const std::int64_t step = quantile(steps, 0.5);
+    if (step <= 0) continue;
+    const std::int64_t tolerance = std::max(step / 10, are_seconds && step >= 5 * us_per_s ? us_per_s : 0);
+    std::size_t n_on = 0, n_between = 0;
+    for (const Row& row : found) {
+      const std::int64_t rest = row.*after % step;
+      const bool is_on = row.*after + tolerance >= step && std::min(rest, step - rest) <= tolerance;
+      n_on += is_on && !row.is_changed ? 1 : 0;
+      n_between += !is_on && row.is_changed ? 1 : 0;
+    }
+    if (share(n_on, steps.size()) >= nearly_all && share(n_between, n_changed) >= most)
+      return n_changed >= fewest ? Beat::sure : Beat::perhaps;
+  }
+  return Beat::none;
+}
+
 }  // namespace
 
 std::string settling_map(const std::string& keys) { return "{pirsim_log: 1, " + keys + "}"; }
@@ -107,22 +149,22 @@ RowsProof proof_of_rows(std::span<const StateRow> rows) {
   if (steps.empty()) return proof;
   proof.usual = steps.cadence();
   proof.are_in_step = steps.usual() >= most;
-  std::size_t n_changed = 0, n_single = 0, n_between = 0;
+  std::size_t n_changed = 0, n_single = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     std::size_t n = 0;
     for (std::size_t k = 0; k < rows[i].states.size(); ++k) n += rows[i].states[k] != rows[i - 1].states[k] ? 1 : 0;
     n_changed += n > 0 ? 1 : 0;
     n_single += n == 1 ? 1 : 0;
-    n_between += n > 0 && !steps.is_on_grid(rows[i].us - rows[i - 1].us) ? 1 : 0;
   }
   const std::size_t n_after = rows.size() - 1;
   const double changed = share(n_changed, n_after), single = share(n_single, n_changed);
   const bool is_short = rows.size() < few_rows;
-  // A heartbeat, and rows between its beats that change something.
-  const bool has_beat = n_changed >= 4 && changed < 0.5 && share(n_between, n_changed) >= most;
+  const Beat beat = beat_of(rows);
   using Are = RowsProof::Are;
-  if (has_beat) {
+  if (beat == Beat::sure) {
     proof.are = Are::changes;
+  } else if (beat == Beat::perhaps && !is_short) {
+    proof.why = "few rows change something, and those come between the others' steps";
   } else if ((is_short ? steps.has_few_gaps() : steps.have_cadence()) && changed < nearly_all) {
     proof.are = Are::readings;
   } else if (proof.are_in_step && !is_short) {  // every row changes something, in step
@@ -132,7 +174,7 @@ RowsProof proof_of_rows(std::span<const StateRow> rows) {
     const bool is_quick = steps.usual() == 1.0 && steps.median() <= 60 * us_per_s;
     proof.are = is_quick && rows.size() > 2 ? Are::readings : Are::either;
     proof.why = "so few rows can be readings or changes";
-  } else if (changed >= nearly_all || (!is_short && !steps.have_cadence() && changed >= 0.5)) {
+  } else if (changed >= nearly_all) {
     proof.are = single >= 0.5 ? Are::changes : Are::either;
     proof.why = "rows come at any step, and most change several sensors";
   } else {

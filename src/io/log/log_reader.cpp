@@ -226,6 +226,17 @@ void require_sensors(const Log& log, const LogMap::Seconds& seconds, const std::
   }
 }
 
+/// What two files tell of one sensor at the same time may be two sensors'.
+void require_parts(EventTracks::Track& track, const std::vector<InputFile>& files) {
+  std::ranges::sort(track.parts, {}, &EventTracks::Track::Part::first_us);
+  for (std::size_t i = 1; i < track.parts.size(); ++i) {
+    if (track.parts[i - 1].last_us < track.parts[i].first_us) continue;
+    const std::size_t later = std::max(track.parts[i - 1].file, track.parts[i].file);
+    throw Error(ErrorCode::input, Where{files[later - 1].path},
+                "it overlaps another file in time, with the same sensor '" + track.in_log + "'");
+  }
+}
+
 void finish_events(Log& log, LogReading& reading) {
   std::vector<EventTracks::Track>& tracks = reading.events.tracks();
   const Where where{log.files.front().path};
@@ -235,13 +246,17 @@ void finish_events(Log& log, LogReading& reading) {
   log.end_us = std::min(after_last, reading.to_us.value_or(after_last));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const bool is_people = !log.map.people.empty() && tracks[i].in_log == log.map.people;
-    if (is_people) log.people = event_track(tracks[i], reading, log, log_state::unknown_count);
+    if (is_people) {
+      require_parts(tracks[i], log.files);
+      log.people = event_track(tracks[i], reading, log, log_state::unknown_count);
+    }
     if (is_people || std::ranges::find(chosen, i) != chosen.end()) continue;
     log.others.push_back(tracks[i].in_log);
     log.n_other_rows += tracks[i].n_states + tracks[i].n_other;
   }
   for (const std::size_t i : chosen) {
-    const EventTracks::Track& track = tracks[i];
+    EventTracks::Track& track = tracks[i];
+    require_parts(track, log.files);
     if (!track.odd_text.empty()) {
       reading.remarks.add(
           "odd state", [&] { return track.odd_at; },
@@ -273,11 +288,11 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   const LogShape& shape = file.shape();
   map.form = shape.form;
   map.time = {shape.names[shape.time.first]};
-  if (shape.time.second) map.time.push_back(shape.names[*shape.time.second]);
+  for (const std::size_t column : shape.time.more) map.time.push_back(shape.names[column]);
   map.dates = shape.time.order;
   if (shape.end) {
     map.end = {shape.names[shape.end->first]};
-    if (shape.end->second) map.end.push_back(shape.names[*shape.end->second]);
+    for (const std::size_t column : shape.end->more) map.end.push_back(shape.names[column]);
   }
   if (shape.form != LogMap::Form::wide) {
     map.sensor_column = shape.names[shape.sensor];
@@ -293,14 +308,25 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   map.people_mean = log.people ? shape.people_mean : LogMap::People::none;
 }
 
-/// Rows of changes become events of columns, which are known.
-void take_columns(LogMap& map, const LogShape& shape) {
-  if (shape.form != LogMap::Form::wide) return;
+/// Rows of changes become events of columns, which are known: those of all files.
+void take_columns(LogMap& map, const std::vector<std::unique_ptr<LogFile>>& files) {
+  if (files.front()->shape().form != LogMap::Form::wide) return;
   std::vector<LogMap::Sensor> sensors;
-  for (const std::size_t column : shape.sensors)
-    sensors.push_back({name_of(map, shape.names[column]), shape.names[column]});
+  for (const auto& file : files) {
+    const LogShape& shape = file->shape();
+    for (const std::size_t column : shape.sensors) {
+      const std::string& name = shape.names[column];
+      if (std::ranges::find(sensors, name, &LogMap::Sensor::in_log) == sensors.end())
+        sensors.push_back({name_of(map, name), name});
+    }
+    if (!shape.people) continue;
+    const std::string& people = shape.names[*shape.people];
+    if (!map.people.empty() && map.people != people)
+      throw Error(ErrorCode::input, Where{file->file().path},
+                  "it counts people in '" + people + "', another file in '" + map.people + "'");
+    map.people = people;
+  }
   map.sensors = std::move(sensors);
-  if (shape.people) map.people = shape.names[*shape.people];
 }
 
 void remark_constant_sensors(const Log& log, LogReading& reading) {
@@ -359,6 +385,12 @@ void require_one_form(const LogFile& first, LogFile& other, LogFile& first_again
                 "its times are times of day, so that files can't be put in order: join them in one");
   }
   const bool is_same_clock = first_again.timer().clock() == other.timer().clock();
+  if (is_same && other.source().empty() && first.source().empty() &&
+      (first.shape().header_line > 0) != (other.shape().header_line > 0)) {
+    throw Error(ErrorCode::input, Where{other.file().path},
+                std::string("its first line ") + (other.shape().header_line > 0 ? "names" : "doesn't name") +
+                    " the columns, the first file's " + (other.shape().header_line > 0 ? "doesn't" : "does"));
+  }
   if (is_same && is_same_clock) return;
   throw Error(ErrorCode::input, Where{other.file().path},
               is_same ? "its times are of another kind than those of the first file"
@@ -414,7 +446,7 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     if (reading.from_us.value_or(*reading.first_us) > *reading.last_us ||
         reading.to_us.value_or(*reading.last_us) < *reading.first_us)
       refuse_part();
-    take_columns(log.map, first.shape());
+    take_columns(log.map, read);
     log.map.form = first.shape().form;
     if (log.map.form == LogMap::Form::intervals) require_no_ends(log.map, log.files.front().path);
     finish_events(log, reading);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -12,120 +11,32 @@
 
 #include "core/text.hpp"
 #include "io/log/log_proof.hpp"
+#include "io/log/log_times.hpp"
 #include "io/log/log_words.hpp"
 #include "schema/columns.hpp"
-#include "schema/limits.hpp"
 
 namespace pirsim::io {
 namespace {
-
-/// The head as a table; every row has as many fields as the first line, the missing ones being empty.
-struct HeadTable {
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> names;
-  int header_line = 0;
-
-  [[nodiscard]] std::size_t n_columns() const { return names.size(); }
-  /// Of the rows' fields in this column.
-  [[nodiscard]] std::size_t count(std::size_t column, const std::function<bool(const std::string&)>& holds) const {
-    return static_cast<std::size_t>(std::ranges::count_if(rows, [&](const auto& row) { return holds(row[column]); }));
-  }
-  [[nodiscard]] bool is_mostly(std::size_t column, const std::function<bool(const std::string&)>& holds) const {
-    return !rows.empty() && 2 * count(column, holds) >= rows.size();
-  }
-};
-
-char separator_of(const std::string& line) {
-  constexpr std::array separators{',', ';', '\t'};
-  const auto n = [&](char c) { return std::ranges::count(line, c); };
-  const char most = *std::ranges::max_element(separators, {}, n);
-  return n(most) == 0 ? ' ' : most;
-}
-
-bool is_of_kind(const std::string& text, Stamp::Kind kind, LogMap::Dates order) {
-  const auto stamp = parse_stamp(text, order);
-  return stamp && stamp->kind == kind;
-}
-
-bool is_number(const std::string& text) { return is_of_kind(text, Stamp::Kind::number, LogMap::Dates::found); }
-
-/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers.
-bool is_header(const std::vector<std::string>& fields) {
-  const auto is_value = [](const std::string& field) { return parse_stamp(field, LogMap::Dates::found).has_value(); };
-  const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
-  return std::ranges::none_of(fields, is_value) || std::ranges::any_of(fields, is_time);
-}
-
-std::vector<std::string> fields_of(const HeadLine& line, char separator, const std::string& file) {
-  std::vector<std::string_view> fields;
-  std::vector<std::string> unquoted;
-  if (!split_fields(line.text, separator, fields, unquoted))
-    throw Error(ErrorCode::input, {file, line.line, 1}, "a quote that isn't closed, or text behind one that is");
-  if (fields.size() > limits::log_columns) {
-    throw Error(ErrorCode::input, {file, line.line, 1}, "more than " + std::to_string(limits::log_columns) + " fields");
-  }
-  return {fields.begin(), fields.end()};
-}
-
-void check_names(const HeadTable& table, const std::string& file) {
-  std::set<std::string> known;
-  for (std::size_t i = 0; i < table.n_columns(); ++i) {
-    const std::string& name = table.names[i];
-    const Where where{file, table.header_line, 1};
-    if (!known.insert(name).second) throw Error(ErrorCode::input, where, "column '" + name + "' appears twice");
-    if (const std::string found = invisible_character(name, Lines::many); !found.empty())
-      throw Error(ErrorCode::input, where, "the name of column " + std::to_string(i + 1) + " contains " + found);
-  }
-}
-
-HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file) {
-  HeadTable table;
-  for (const HeadLine& line : head) table.rows.push_back(fields_of(line, separator, file));
-  const std::size_t n = table.rows.front().size();
-  if (is_header(table.rows.front())) {
-    table.header_line = head.front().line;
-    table.names = table.rows.front();
-    table.rows.erase(table.rows.begin());
-  } else {
-    table.names.resize(n);
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    std::string& name = table.names[i];
-    while (name.starts_with(' ')) name.erase(0, 1);
-    while (name.ends_with(' ')) name.pop_back();
-    if (name.empty()) name = "column " + std::to_string(i + 1);
-  }
-  check_names(table, file);
-  // What isn't a row of this table is told when it is read.
-  const auto is_other = [&](const auto& row) { return row.size() != n; };
-  if (table.header_line > 0 && !table.rows.empty() && std::ranges::all_of(table.rows, is_other)) {
-    throw Error(ErrorCode::input, {file, head[1].line, 1},
-                "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
-  }
-  if (table.header_line > 0) std::erase_if(table.rows, is_other);
-  for (auto& row : table.rows) row.resize(n);
-  return table;
-}
 
 // What the columns are.
 
 class Finder {
  public:
-  Finder(const HeadTable& table, const LogMap& map, const std::string& file) : table_(table), map_(map), file_(file) {}
+  Finder(const HeadTable& table, const LogMap& map, LogZone* zone)
+      : table_(table), map_(map), time_finder_(table, map, zone) {}
 
-  void find(LogShape& shape, LogZone* zone, LogMap::Rows before) {
+  void find(LogShape& shape, LogMap::Rows before) {
     if (find_intervals(shape)) return;
-    find_time(shape.time, map_.time);
-    time_ = shape.time;
+    time_ = time_finder_.find(map_.time);
+    shape.time = time_;
     are_words_ = shape.separator == ' ';
-    LogTimer timer(shape.time, zone, 0.0);
-    for (const auto& row : table_.rows)
-      times_.push_back(timer.read(std::vector<std::string_view>(row.begin(), row.end())).us);
+    times_ = time_finder_.times(time_);
     const auto events = sensor_and_state();
     if (map_.form == LogMap::Form::events && !events)
-      refuse("events need columns of sensors and their states; name them in a map: sensor and state");
+      table_.refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
+      if (map_.form == LogMap::Form::found) require_events(*events);
       shape.sensor = events->sensor;
       shape.state = events->state;
     } else {
@@ -135,163 +46,7 @@ class Finder {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw Error(ErrorCode::input, {file_, std::max(table_.header_line, 1), 1}, why);
-  }
-  /// The columns with their first values, for messages.
-  [[nodiscard]] std::string columns_in_words() const {
-    constexpr std::size_t most = 12;
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < std::min(most, table_.n_columns()); ++i) {
-      const std::string value = table_.rows.empty() ? "" : table_.rows.front()[i];
-      texts.push_back(shortened(table_.names[i]) + " ('" + value + "')");
-    }
-    return joined(texts, ", ") + (table_.n_columns() > most ? ", ..." : "");
-  }
-  [[nodiscard]] std::size_t named(const std::string& name) const {
-    const auto found = std::ranges::find(table_.names, name);
-    if (found == table_.names.end()) refuse("there is no column '" + name + "'" + near_or_all(name, table_.names));
-    return static_cast<std::size_t>(found - table_.names.begin());
-  }
-  [[nodiscard]] NameSays says(std::size_t column) const { return what_name_says(table_.names[column]); }
-  [[nodiscard]] bool is_time(std::size_t column, Stamp::Kind kind, LogMap::Dates order) const {
-    return table_.is_mostly(column, [&](const std::string& text) { return is_of_kind(text, kind, order); });
-  }
-
-  // Times.
-
-  /// Of dates that end in their year, by what the head says.
-  [[nodiscard]] LogMap::Dates order_in(std::size_t column) const {
-    if (map_.dates != LogMap::Dates::found) return map_.dates;
-    bool is_open = false;
-    for (const auto& row : table_.rows) {
-      const auto order = order_of_date(row[column]);
-      if (order && *order != LogMap::Dates::found) return *order;
-      is_open = is_open || order.has_value();
-    }
-    if (is_open) {
-      refuse(
-          "'" + table_.rows.front()[column] +
-          "' can be two dates, and no other one tells which: say `dates: month_first` or `dates: day_first` in a map");
-    }
-    return LogMap::Dates::found;
-  }
-  void set_first(TimeColumns& time, std::size_t column, Stamp::Kind kind) const {
-    time.first = column;
-    time.kind = kind;
-    if (kind == Stamp::Kind::number) return set_numbers(time);
-    if (kind != Stamp::Kind::time_of_day) time.order = order_in(column);
-  }
-  void set_numbers(TimeColumns& time) const {
-    std::vector<double> numbers;
-    for (const auto& row : table_.rows) {
-      const auto stamp = parse_stamp(row[time.first], LogMap::Dates::found);
-      if (stamp && stamp->kind == Stamp::Kind::number) numbers.push_back(stamp->number);
-    }
-    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-    std::nth_element(numbers.begin(), middle, numbers.end());
-    set_unit(time, *middle, table_.names[time.first]);
-  }
-  /// The kind of most of a column's fields.
-  [[nodiscard]] std::optional<Stamp::Kind> kind_of(std::size_t column) const {
-    for (const Stamp::Kind kind : {Stamp::Kind::absolute, Stamp::Kind::local, Stamp::Kind::date,
-                                   Stamp::Kind::time_of_day, Stamp::Kind::number}) {
-      if (is_time(column, kind, LogMap::Dates::found) || is_time(column, kind, LogMap::Dates::day_first)) return kind;
-    }
-    return std::nullopt;
-  }
-  [[nodiscard]] bool has_moments(std::size_t column) const {
-    const auto kind = kind_of(column);
-    return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local;
-  }
-  enum class NumberIs { no_time, in_order, called_so, since_1970, called_so_in_order };
-  /// What a column of numbers tells of being the time: its name, its size, and that it grows.
-  [[nodiscard]] NumberIs what_number_is(std::size_t column) const {
-    std::size_t n_back = 0, n_since_1970 = 0, n = 0;
-    double first = 0.0, last = 0.0;
-    for (const auto& row : table_.rows) {
-      const auto stamp = parse_stamp(row[column], LogMap::Dates::found);
-      if (!stamp || stamp->kind != Stamp::Kind::number) continue;
-      n_back += n > 0 && stamp->number < last ? 1 : 0;
-      last = stamp->number;
-      if (n++ == 0) first = last;
-      double s = last;
-      while (s > 1e11) s /= 1e3;
-      n_since_1970 += s >= 631'152'000.0 && s < 4'102'444'800.0 ? 1 : 0;  // from 1990 to 2099
-    }
-    const bool grows = 10 * n_back <= n && (last > first || n == 1);
-    if (says(column) == NameSays::time) return grows ? NumberIs::called_so_in_order : NumberIs::called_so;
-    if (n_since_1970 == n) return NumberIs::since_1970;
-    return grows && table_.header_line == 0 ? NumberIs::in_order : NumberIs::no_time;
-  }
-  [[nodiscard]] std::optional<std::size_t> number_of_time(const std::vector<std::size_t>& columns,
-                                                          const std::vector<std::optional<Stamp::Kind>>& kinds,
-                                                          bool is_told) const {
-    NumberIs best = NumberIs::no_time;
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (kinds[i] != Stamp::Kind::number) continue;
-      if (is_told) return columns[i];
-      const NumberIs is = what_number_is(columns[i]);
-      if (is > best) found.clear();
-      best = std::max(best, is);
-      if (is == best && is != NumberIs::no_time) found.push_back(columns[i]);
-    }
-    if (found.size() > 1 && best == NumberIs::in_order) {
-      std::vector<std::string> maps;
-      for (const std::size_t column : found) maps.push_back("time: " + quoted_yaml(table_.names[column]));
-      refuse(with_maps("several columns of numbers grow, and may be the time", maps) +
-             "; the columns and their first values: " + columns_in_words());
-    }
-    return found.empty() ? std::nullopt : std::optional(found.front());
-  }
-  void find_time(TimeColumns& time, const std::vector<std::string>& told) const {
-    std::vector<std::size_t> columns;
-    for (const std::string& name : told) columns.push_back(named(name));
-    const bool is_told = !columns.empty();
-    if (!is_told) {
-      for (std::size_t i = 0; i < table_.n_columns(); ++i) columns.push_back(i);
-      std::ranges::stable_partition(columns, [&](std::size_t i) { return says(i) == NameSays::time; });
-    }
-    // One that never changes isn't the time: when a sensor was bought.
-    const auto is_still = [&](std::size_t i) { return n_names(i) == 1; };
-    if (!is_told && !std::ranges::all_of(columns, [&](std::size_t i) { return is_still(i) || !has_moments(i); }))
-      std::erase_if(columns, [&](std::size_t i) { return is_still(i) && has_moments(i); });
-    std::vector<std::optional<Stamp::Kind>> kinds;
-    for (const std::size_t column : columns) kinds.push_back(kind_of(column));
-    const auto first_of = [&](Stamp::Kind kind) -> std::optional<std::size_t> {
-      const auto found = std::ranges::find(kinds, std::optional(kind));
-      return found == kinds.end() ? std::nullopt
-                                  : std::optional(columns[static_cast<std::size_t>(found - kinds.begin())]);
-    };
-    for (const Stamp::Kind kind : {Stamp::Kind::absolute, Stamp::Kind::local}) {
-      if (const auto column = first_of(kind)) return set_first(time, *column, kind);
-    }
-    const auto date = first_of(Stamp::Kind::date), hour = first_of(Stamp::Kind::time_of_day);
-    if (date && hour) {
-      set_first(time, *date, Stamp::Kind::local);
-      time.second = *hour;
-      time.kind = kind_of_pair(time);
-      return;
-    }
-    if (const auto number = number_of_time(columns, kinds, is_told))
-      return set_first(time, *number, Stamp::Kind::number);
-    if (hour) return set_first(time, *hour, Stamp::Kind::time_of_day);
-    refuse((is_told ? "no times can be read from '" + joined(told, "', '") + "'"
-                    : std::string("no column holds times; name it in a map: time")) +
-           "; the columns and their first values: " + columns_in_words());
-  }
-  /// With its time of day a date may have an offset.
-  [[nodiscard]] Stamp::Kind kind_of_pair(const TimeColumns& time) const {
-    const auto is_absolute = [&](const auto& row) {
-      const auto stamp = parse_stamp(row[time.first] + " " + row[*time.second], time.order);
-      return stamp && stamp->kind == Stamp::Kind::absolute;
-    };
-    return std::ranges::any_of(table_.rows, is_absolute) ? Stamp::Kind::absolute : Stamp::Kind::local;
-  }
-  [[nodiscard]] static bool is_of(const TimeColumns& time, std::size_t column) {
-    return column == time.first || column == time.second;
-  }
+  [[nodiscard]] NameSays says(std::size_t column) const { return table_.says(column); }
 
   // Intervals.
 
@@ -302,7 +57,7 @@ class Finder {
       const bool is_called_so = std::ranges::any_of(words_of_name(table_.names[i]), [&](const std::string& word) {
         return std::ranges::find(words, word) != words.end();
       });
-      const auto kind = is_called_so ? kind_of(i) : std::nullopt;
+      const auto kind = is_called_so ? time_finder_.kind_of(i) : std::nullopt;
       const auto is_state = [](const std::string& text) { return read_state(text).has_value(); };
       if (kind && (kind != Stamp::Kind::number || table_.count(i, is_state) < table_.rows.size()))
         names.push_back(table_.names[i]);
@@ -319,13 +74,17 @@ class Finder {
     const std::vector<std::string> begin = map_.time.empty() ? times_called(begins) : map_.time;
     const std::vector<std::string> end = map_.end.empty() ? times_called(ends) : map_.end;
     if (begin.empty() || end.empty()) {
-      if (is_told) refuse("intervals need columns of their begins and ends; name them in a map: time and end");
+      if (is_told) table_.refuse("intervals need columns of their begins and ends; name them in a map: time and end");
       return false;
     }
-    find_time(shape.time, begin);
-    find_time(shape.end.emplace(), end);
+    shape.time = time_finder_.find(begin);
+    shape.end = time_finder_.find(end);
+    if (map_.time.empty() && map_.end.empty()) {
+      shape.time = time_finder_.with_date(shape.time);
+      shape.end = time_finder_.with_date(*shape.end);
+    }
     if (shape.end->kind != shape.time.kind || shape.end->zero != shape.time.zero)
-      refuse("begins and ends of intervals are different kinds of time");
+      table_.refuse("begins and ends of intervals are different kinds of time");
     shape.form = LogMap::Form::intervals;
     find_sensor_and_state(shape);
     return true;
@@ -333,20 +92,18 @@ class Finder {
   void find_sensor_and_state(LogShape& shape) const {
     std::vector<std::size_t> called, texts;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (is_of(shape.time, i) || is_of(*shape.end, i)) continue;
+      if (shape.time.has(i) || shape.end->has(i)) continue;
       if (says(i) == NameSays::state && has_states(i)) shape.state = i;
       if (says(i) == NameSays::sensor) called.push_back(i);
       if (is_text(i)) texts.push_back(i);
     }
-    if (!map_.state_column.empty()) shape.state = named(map_.state_column);
+    if (!map_.state_column.empty()) shape.state = table_.named(map_.state_column);
     const std::vector<std::size_t>& sensors = called.empty() ? texts : called;
     if (map_.sensor_column.empty() && sensors.size() != 1) {
-      refuse(
-          "intervals, of which no column or several may name the sensor; say which in a map: sensor; the columns and "
-          "their first values: " +
-          columns_in_words());
+      table_.refuse("intervals, of which no column or several may name the sensor; say which in a map: sensor" +
+                    table_.columns_in_words());
     }
-    shape.sensor = map_.sensor_column.empty() ? sensors.front() : named(map_.sensor_column);
+    shape.sensor = map_.sensor_column.empty() ? sensors.front() : table_.named(map_.sensor_column);
   }
 
   // Events.
@@ -358,13 +115,10 @@ class Finder {
     return "form: events, sensor: " + quoted_yaml(table_.names[pair.sensor]) +
            ", state: " + quoted_yaml(table_.names[pair.state]);
   }
-  [[noreturn]] void refuse_with(const std::string& why, const std::vector<std::string>& maps) const {
-    refuse(with_maps(why, maps) + "; the columns and their first values: " + columns_in_words());
-  }
   [[noreturn]] void refuse_pairs(const std::string& why, const std::vector<SensorAndState>& pairs) const {
     std::vector<std::string> maps;
     for (const SensorAndState& pair : pairs) maps.push_back(in_map(pair));
-    refuse_with(why, maps);
+    table_.refuse_with(why, maps);
   }
 
   [[nodiscard]] bool has_states(std::size_t column) const { return !known_states(column).empty(); }
@@ -379,11 +133,6 @@ class Finder {
   [[nodiscard]] bool is_text(std::size_t column) const {
     return table_.is_mostly(
         column, [](const std::string& text) { return !text.empty() && !is_number(text) && !read_state(text); });
-  }
-  [[nodiscard]] std::size_t n_names(std::size_t column) const {
-    std::set<std::string_view> names;
-    for (const auto& row : table_.rows) names.insert(row[column]);
-    return names.size();
   }
   /// Rows that have the same value in `a` have the same in `b`.
   [[nodiscard]] bool tells(std::size_t a, std::size_t b) const {
@@ -402,7 +151,7 @@ class Finder {
     });
   }
   [[nodiscard]] bool is_left_open(std::size_t column) const {
-    const bool is_other = is_of(time_, column) || is_bookkeeping(column) || numbers_rows(column);
+    const bool is_other = time_.has(column) || is_bookkeeping(column) || numbers_rows(column);
     return says(column) == NameSays::nothing && !is_other;
   }
 
@@ -410,7 +159,7 @@ class Finder {
   [[nodiscard]] std::vector<std::size_t> states_beside(std::size_t sensor) const {
     std::array<std::vector<std::size_t>, 3> by_rank;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (i == sensor || is_of(time_, i) || is_bookkeeping(i)) continue;
+      if (i == sensor || time_.has(i) || is_bookkeeping(i)) continue;
       if (says(i) == NameSays::state) by_rank[0].push_back(i);  // also where the first lines are of other quantities
       if (!has_states(i)) continue;
       if (says(i) == NameSays::motion || says(i) == NameSays::presence) by_rank[1].push_back(i);
@@ -448,13 +197,11 @@ class Finder {
     if (map_.form == LogMap::Form::wide) return std::nullopt;
     if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
       if (map_.sensor_column.empty() || map_.state_column.empty())
-        refuse("a map of events names both columns, sensor and state");
-      return SensorAndState{named(map_.sensor_column), named(map_.state_column)};
+        table_.refuse("a map of events names both columns, sensor and state");
+      return SensorAndState{table_.named(map_.sensor_column), table_.named(map_.state_column)};
     }
-    const auto is_column = [&](const std::string& name) {
-      return std::ranges::find(table_.names, name) != table_.names.end();
-    };
-    const bool names_columns = std::ranges::any_of(told_names(), is_column);
+    const bool names_columns =
+        std::ranges::any_of(told_names(), [&](const std::string& name) { return is_called(name); });
     const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
     if (map_.form == LogMap::Form::found && is_told_wide) return std::nullopt;
     if (table_.header_line == 0) {
@@ -465,7 +212,7 @@ class Finder {
   }
   /// Without names: a sensor and its state follow the time.
   [[nodiscard]] std::optional<SensorAndState> behind() const {
-    const std::size_t sensor = time_.second.value_or(time_.first) + 1;
+    const std::size_t sensor = time_.last() + 1;
     if (sensor + 1 >= table_.n_columns() || !is_text(sensor) || !has_states(sensor + 1)) return std::nullopt;
     const auto is_casas = [](const std::string& text) { return is_casas_motion(text); };
     const bool is_sentence =  // "hall motion detected"
@@ -477,16 +224,16 @@ class Finder {
     const std::size_t n = table_.rows.size();
     std::vector<std::size_t> sensors;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      const bool is_number_of_row = n_names(i) == n && (n >= 8 || !is_text(i));
-      if (says(i) == NameSays::sensor && !is_of(time_, i) && !is_number_of_row) sensors.push_back(i);
+      const bool is_number_of_row = table_.n_values(i) == n && (n >= 8 || !is_text(i));
+      if (says(i) == NameSays::sensor && !time_.has(i) && !is_number_of_row) sensors.push_back(i);
     }
-    const auto is_constant = [&](std::size_t i) { return n_names(i) == 1; };
+    const auto is_constant = [&](std::size_t i) { return table_.n_values(i) == 1; };
     if (!std::ranges::all_of(sensors, is_constant)) std::erase_if(sensors, is_constant);
     if (sensors.empty()) return std::nullopt;
     const std::size_t sensor = finest(sensors).value_or(sensors.front());
     const std::vector<std::size_t> states = states_beside(sensor);
     if (states.empty()) return std::nullopt;
-    const bool is_one_device = n_names(sensor) == 1 && says(states.front()) != NameSays::state;
+    const bool is_one_device = table_.n_values(sensor) == 1 && says(states.front()) != NameSays::state;
     if (is_one_device && map_.form != LogMap::Form::events) return std::nullopt;
     if (!finest(sensors)) {
       std::vector<SensorAndState> pairs;
@@ -500,10 +247,31 @@ class Finder {
     }
     return SensorAndState{sensor, states.front()};
   }
+  /// Names that return in step, mostly with the same state, are readings, which hold for the time before them.
+  void require_events(const SensorAndState& pair) const {
+    constexpr std::size_t few_rows = 8;
+    std::map<std::string_view, std::vector<StateRow>> by_name;
+    for (std::size_t i = 0; i < table_.rows.size(); ++i) {
+      if (times_[i]) by_name[table_.rows[i][pair.sensor]].push_back({*times_[i], {cell(i, pair.state)}});
+    }
+    std::size_t n_readings = 0, n_others = 0;
+    for (const auto& [name, rows] : by_name) {
+      if (rows.size() < few_rows) continue;
+      const RowsProof proof = proof_of_rows(rows);
+      std::size_t n_same = 0;
+      for (std::size_t i = 1; i < rows.size(); ++i) n_same += rows[i].states == rows[i - 1].states ? 1 : 0;
+      (proof.are == RowsProof::Are::readings && 2 * n_same > rows.size() ? n_readings : n_others) += rows.size();
+    }
+    if (n_readings <= n_others) return;
+    table_.refuse_with(
+        "each name returns in step, and mostly nothing changed: these are readings, each of the time before it, which "
+        "are read from a table with a column a sensor; or events with a heartbeat",
+        {in_map(pair)});
+  }
   enum class Proof { none, open, given };
   /// Whether rows tell that `pair` are sensors and their states, though no name says so.
   [[nodiscard]] Proof proof_of(const SensorAndState& pair) const {
-    const std::size_t n = n_names(pair.sensor), n_rows = table_.rows.size();
+    const std::size_t n = table_.n_values(pair.sensor), n_rows = table_.rows.size();
     const bool has_names = is_text(pair.sensor);
     const bool has_all = table_.count(pair.sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
     const bool are_states = is_state_like(pair.sensor);
@@ -551,8 +319,8 @@ class Finder {
     if (given.size() == 1) return given.front();
     if (given.size() > 1) refuse_pairs("several columns may name sensors, or hold their states", given);
     if (open.empty()) return std::nullopt;
-    refuse_with("'" + table_.names[open.front().sensor] + "' may name sensors, whose events these are, or not",
-                {in_map(open.front()), "form: wide"});
+    table_.refuse_with("'" + table_.names[open.front().sensor] + "' may name sensors, whose events these are, or not",
+                       {in_map(open.front()), "form: wide"});
   }
 
   // Wide logs.
@@ -583,8 +351,7 @@ class Finder {
   }
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
-    const bool is_ours = std::ranges::find(table_.names, "time_s") != table_.names.end();
-    return is_of_area(column) || (is_ours && is_column_name(table_.names[column]));
+    return is_of_area(column) || (is_called("time_s") && is_column_name(table_.names[column]));
   }
   /// Counts the people of a part of the room, not all of them, or is a door's.
   [[nodiscard]] bool is_of_area(std::size_t column) const {
@@ -601,13 +368,13 @@ class Finder {
     shape.people_mean = map_.people_mean;
     if (map_.people_mean == LogMap::People::none) return;
     if (!map_.people.empty()) {
-      shape.people = named(map_.people);
-      if (is_mapped(*shape.people)) refuse("'" + map_.people + "' can't be a sensor and the people");
+      shape.people = table_.named(map_.people);
+      if (is_mapped(*shape.people)) table_.refuse("'" + map_.people + "' can't be a sensor and the people");
       return;
     }
     std::vector<std::size_t> counts, presences, sensors;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (is_of(time_, i) || is_of_area(i) || is_mapped(i)) continue;
+      if (time_.has(i) || is_of_area(i) || is_mapped(i)) continue;
       if (counts_people(i)) {
         counts.push_back(i);
       } else if ((says(i) == NameSays::presence || says(i) == NameSays::count) && looks_like_motion(i) &&
@@ -618,35 +385,52 @@ class Finder {
       }
     }
     if (counts.size() > 1) {
-      refuse_with("'" + table_.names[counts[0]] + "' and '" + table_.names[counts[1]] + "' may both count the people",
-                  {people_map(counts[0]), people_map(counts[1]), "people: none"});
+      table_.refuse_with(
+          "'" + table_.names[counts[0]] + "' and '" + table_.names[counts[1]] + "' may both count the people",
+          {people_map(counts[0]), people_map(counts[1]), "people: none"});
     }
     if (counts.size() == 1) shape.people = counts.front();
     if (presences.size() == 1 && counts.empty() && !sensors.empty() && map_.sensors.empty()) {
       const std::string name = quoted_yaml(table_.names[presences.front()]);
-      refuse_with("'" + table_.names[presences.front()] + "' may be a sensor, or tell whether anybody is there",
-                  {"people: none", "people: {column: " + name + ", means: presence}"});
+      table_.refuse_with("'" + table_.names[presences.front()] + "' may be a sensor, or tell whether anybody is there",
+                         {"people: none", "people: {column: " + name + ", means: presence}"});
     }
   }
   void find_sensors(LogShape& shape) const {
-    for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(named(sensor.in_log));
+    for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(table_.named(sensor.in_log));
     if (!shape.sensors.empty()) return;
+    const bool are_ours = is_called("time_s");
+    const bool is_beside_motion = has_motion();
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (is_of(time_, i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i))
-        continue;
+      if (time_.has(i) || counts_people(i) || i == shape.people || is_bookkeeping(i) || !looks_like_motion(i)) continue;
       // Beside sure ones, devices of other kinds are none, nor are flags and numbers that never change.
       const bool may_be_flag = says(i) == NameSays::other_device || says(i) == NameSays::sensor ||
                                (says(i) == NameSays::nothing && known_states(i).size() < 2);
       if (is_told_by_count(i, shape) || (may_be_flag && has_sure_sensors())) continue;
+      if (says(i) == NameSays::nothing && is_beside_motion && !are_ours) {
+        shape.doubtful.push_back(table_.names[i]);
+        continue;
+      }
       shape.sensors.push_back(i);
     }
+  }
+  [[nodiscard]] bool is_called(const std::string& name) const {
+    return std::ranges::find(table_.names, name) != table_.names.end();
+  }
+  /// Beside what is called motion or presence, other states may be the truth, or doors.
+  [[nodiscard]] bool has_motion() const {
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      const bool is_called_so = says(i) == NameSays::motion || says(i) == NameSays::presence;
+      if (!time_.has(i) && is_called_so && has_states(i) && !is_bookkeeping(i)) return true;
+    }
+    return false;
   }
   [[nodiscard]] bool has_sure_sensors() const {
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       const bool is_called_so =
           says(i) == NameSays::motion || says(i) == NameSays::presence || says(i) == NameSays::state;
       const bool is_sure = table_.header_line == 0 && is_state_like(i) && known_states(i).size() > 1;
-      if (!is_of(time_, i) && has_states(i) && (is_called_so || is_sure)) return true;
+      if (!time_.has(i) && has_states(i) && (is_called_so || is_sure)) return true;
     }
     return false;
   }
@@ -667,8 +451,8 @@ class Finder {
       for (std::size_t b = a + 1; b < shape.sensors.size(); ++b) {
         if (!are_opposites(rows, a, b)) continue;
         const std::string &one = table_.names[shape.sensors[a]], &other = table_.names[shape.sensors[b]];
-        refuse_with("'" + one + "' is always on when '" + other + "' is off: one of them is no sensor",
-                    {"sensors: [" + quoted_yaml(one) + "]", "sensors: [" + quoted_yaml(other) + "]"});
+        table_.refuse_with("'" + one + "' is always on when '" + other + "' is off: one of them is no sensor",
+                           {"sensors: [" + quoted_yaml(one) + "]", "sensors: [" + quoted_yaml(other) + "]"});
       }
     }
   }
@@ -698,8 +482,8 @@ class Finder {
     if (map_.empty == LogMap::Empty::found) {
       const Cells cells = cells_of(rows);
       if (cells == Cells::scattered) {
-        refuse_with("many cells are empty: their states may be unchanged, or unknown",
-                    {"empty: unchanged", "empty: unknown"});
+        table_.refuse_with("many cells are empty: their states may be unchanged, or unknown",
+                           {"empty: unchanged", "empty: unknown"});
       }
       shape.empty = cells == Cells::pivot ? LogMap::Empty::unchanged : LogMap::Empty::unknown;
     }
@@ -729,7 +513,7 @@ class Finder {
       } else if (is_either && shape.empty == LogMap::Empty::unchanged) {
         shape.rows = LogMap::Rows::changes;
       } else if (is_either && !are_ours && shape.cadence.interval_us > 0) {
-        refuse_with(
+        table_.refuse_with(
             "rows may be readings, each of the time before it, or changes that hold until the next: " + proof.why,
             {"rows: readings", "rows: changes"});
       }
@@ -745,11 +529,11 @@ class Finder {
     find_sensors(shape);
     const bool are_of_sentence = table_.header_line == 0 && are_words_ && map_.sensors.empty();
     if (shape.sensors.empty() || are_of_sentence) {
-      refuse((are_of_sentence ? "its lines are words, not a table with a column a sensor"
-                              : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
-             "; the columns and their first values: " + columns_in_words() +
-             "; name the sensors in a map, or the columns of events: " +
-             settling_map("form: events, sensor: COLUMN, state: COLUMN"));
+      table_.refuse((are_of_sentence
+                         ? "its lines are words, not a table with a column a sensor"
+                         : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
+                    table_.columns_in_words() + "; name the sensors in a map, or the columns of events: " +
+                    settling_map("form: events, sensor: COLUMN, state: COLUMN"));
     }
     require_no_opposites(shape);
     const LogTimer timer(shape.time, nullptr, 0.0);
@@ -759,14 +543,14 @@ class Finder {
                                                  (name == "trial" || name == "seat" || name == "replicate"));
       if (is_bookkeeping(i) && tells_runs) shape.runs.push_back(i);
       const bool is_read =
-          is_of(shape.time, i) || i == shape.people || std::ranges::find(shape.sensors, i) != shape.sensors.end();
+          shape.time.has(i) || i == shape.people || std::ranges::find(shape.sensors, i) != shape.sensors.end();
       if (!is_read && !is_bookkeeping(i)) shape.others.push_back(name);
     }
   }
 
   const HeadTable& table_;
   const LogMap& map_;
-  const std::string& file_;
+  TimeFinder time_finder_;
   TimeColumns time_;
   std::vector<std::optional<std::int64_t>> times_;  ///< of the rows
   bool are_words_ = false;                          ///< cut at spaces
@@ -775,8 +559,8 @@ class Finder {
 }  // namespace
 
 std::size_t LogShape::n_read_fields() const {
-  std::size_t last = std::max({time.first, time.second.value_or(0), sensor, state.value_or(0), people.value_or(0)});
-  if (end) last = std::max({last, end->first, end->second.value_or(0)});
+  std::size_t last = std::max({time.last(), sensor, state.value_or(0), people.value_or(0)});
+  if (end) last = std::max(last, end->last());
   for (const std::size_t column : sensors) last = std::max(last, column);
   return last + 1;
 }
@@ -790,7 +574,7 @@ LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const st
     throw Error(ErrorCode::input, {file, table.header_line, 1}, "there are names of columns, but no row");
   shape.header_line = table.header_line;
   shape.names = table.names;
-  Finder(table, map, file).find(shape, zone, before);
+  Finder(table, map, zone).find(shape, before);
   return shape;
 }
 

@@ -7,16 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "io/log/log_head.hpp"
 #include "io/log/log_timer.hpp"
 #include "io/log/log_tracks.hpp"
 #include "pirsim/log.hpp"
 
 namespace pirsim::io {
-
-struct HeadLine {
-  std::string text;
-  int line = 0;
-};
 
 /// How the columns of one file are to be read.
 struct LogShape {
@@ -30,8 +26,9 @@ struct LogShape {
   std::vector<std::size_t> sensors;   ///< columns
   std::optional<std::size_t> people;  ///< column
   LogMap::People people_mean = LogMap::People::count;
-  std::vector<std::size_t> runs;    ///< columns that tell runs apart, of rows that have no clock
-  std::vector<std::string> others;  ///< columns that nothing is read from
+  std::vector<std::size_t> runs;      ///< columns that tell runs apart, of rows that have no clock
+  std::vector<std::string> others;    ///< columns that nothing is read from
+  std::vector<std::string> doubtful;  ///< of them, those whose names don't tell that they are no sensors
   LogMap::Rows rows = LogMap::Rows::found;
   LogMap::Empty empty = LogMap::Empty::found;
   ReadingTracks::Cadence cadence;  ///< of readings; an interval of 0: no two rows have different times

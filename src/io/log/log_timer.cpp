@@ -37,10 +37,9 @@ LogTimer::LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s)
     : columns_(columns), zone_(zone), shift_us_(std::llround(shift_s * 1e6)) {}
 
 LogTimer::Read LogTimer::read(std::span<const std::string_view> fields) {
-  if (!columns_.second) return read_text(fields[columns_.first]);
+  if (columns_.more.empty()) return read_text(fields[columns_.first]);
   joined_.assign(fields[columns_.first]);
-  joined_ += ' ';
-  joined_ += fields[*columns_.second];
+  for (const std::size_t column : columns_.more) (joined_ += ' ') += fields[column];
   return read_text(joined_);
 }
 
@@ -70,7 +69,7 @@ LogTimer::Read LogTimer::from(const Stamp& stamp) {
       return {std::llround(us)};
     }
     case Stamp::Kind::time_of_day:
-      return {after_midnight(stamp.us)};
+      return {stamp.us};
     case Stamp::Kind::absolute:
       if (zone_ == nullptr) note_offset(stamp.us, stamp.offset_s);
       return {stamp.us};
@@ -94,13 +93,6 @@ LogTimer::Read LogTimer::in_zone(std::int64_t local_us) {
   const bool is_before_both = steps_back && pass_ == Pass::second;  // another sensor's rows begin
   if (steps_back) pass_ = is_before_both ? Pass::first : Pass::second;
   return {pass_ == Pass::second ? found.later_us : found.utc_us, {}, Oddity::ambiguous};
-}
-
-std::int64_t LogTimer::after_midnight(std::int64_t us) {
-  constexpr std::int64_t half_a_day_us = us_per_day / 2;
-  if (us + half_a_day_us < last_local_us_) days_us_ += us_per_day;
-  last_local_us_ = us;
-  return us + days_us_;
 }
 
 void LogTimer::note_offset(std::int64_t us, std::int32_t offset_s) {

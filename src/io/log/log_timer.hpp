@@ -1,6 +1,7 @@
 // From a row's time stamp to a moment. Private to io.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,11 +18,16 @@ namespace pirsim::io {
 /// Which columns tell the time, and how.
 struct TimeColumns {
   std::size_t first = 0;
-  std::optional<std::size_t> second;  ///< time of day, of a date in the first
+  std::vector<std::size_t> more{};  ///< what follows the first: a time of day, AM or PM, an offset
   Stamp::Kind kind = Stamp::Kind::local;
   double unit_us = 1e6;                             ///< of numbers
   enum class Zero { epoch, own } zero = Zero::own;  ///< of numbers: what they count from
   LogMap::Dates order = LogMap::Dates::found;
+
+  [[nodiscard]] std::size_t last() const { return more.empty() ? first : std::max(first, std::ranges::max(more)); }
+  [[nodiscard]] bool has(std::size_t column) const {
+    return column == first || std::ranges::find(more, column) != more.end();
+  }
 };
 
 /// What numbers of this size count, by the name of their column if they are small: seconds, milli-, micro- or
@@ -50,7 +56,6 @@ class LogTimer {
  private:
   [[nodiscard]] Read from(const Stamp& stamp);
   [[nodiscard]] Read in_zone(std::int64_t local_us);
-  [[nodiscard]] std::int64_t after_midnight(std::int64_t us);
   void note_offset(std::int64_t us, std::int32_t offset_s);
 
   TimeColumns columns_;
@@ -60,7 +65,6 @@ class LogTimer {
   std::vector<LogOffset> seen_;                           ///< of stamps that tell theirs, where it changes
   enum class Pass { first, second } pass_ = Pass::first;  ///< of an hour that there is twice
   std::int64_t last_local_us_ = 0;
-  std::int64_t days_us_ = 0;  ///< of times of day alone: the midnights that went by
 };
 
 }  // namespace pirsim::io

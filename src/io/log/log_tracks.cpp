@@ -49,7 +49,15 @@ bool EventTracks::add(Track& track, std::int64_t us, std::int32_t value) {
   track.is_sorted = track.is_sorted && is_in_order;
   track.events.push_back({us, 0, value});
   ++n_events_;
+  note(track, us);
   return is_in_order;
+}
+
+void EventTracks::note(Track& track, std::int64_t us) {
+  if (track.parts.empty() || track.parts.back().file != file_) track.parts.push_back({file_, us, us});
+  Track::Part& part = track.parts.back();
+  part.first_us = std::min(part.first_us, us);
+  part.last_us = std::max(part.last_us, us);
 }
 
 namespace {

@@ -58,11 +58,19 @@ class EventTracks {
     bool is_sorted = true;
     Where odd_at{};  ///< the first text that is no state, of a sensor that had some
     std::string odd_text{};
+    struct Part {
+      std::size_t file;
+      std::int64_t first_us, last_us;
+    };
+    std::vector<Part> parts{};  ///< of each file that tells of it
   };
+  void begin_file() noexcept { ++file_; }
   /// Finds or makes it; none if there are too many.
   [[nodiscard]] Track* track(std::string_view in_log);
   /// False if it is earlier than the track's last one.
   bool add(Track& track, std::int64_t us, std::int32_t value);
+  /// The file tells of it at this time, too.
+  void note(Track& track, std::int64_t us);
 
   [[nodiscard]] std::size_t n_events() const noexcept { return n_events_; }
   [[nodiscard]] std::vector<Track>& tracks() noexcept { return tracks_; }
@@ -74,7 +82,7 @@ class EventTracks {
   };
   std::vector<Track> tracks_;
   std::unordered_map<std::string, std::size_t, Hash, std::equal_to<>> index_;
-  std::size_t n_events_ = 0;
+  std::size_t n_events_ = 0, file_ = 0;
 };
 
 /// What a map says of the ends of motion.

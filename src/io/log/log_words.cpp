@@ -82,10 +82,14 @@ std::optional<std::int32_t> read_count(std::string_view text) {
 std::vector<std::string> words_of_name(std::string_view name) {
   std::vector<std::string> words;
   std::string word;
-  for (const char c : small(name)) {
+  bool is_small = false;
+  for (const char letter : name) {
+    const bool is_capital = letter >= 'A' && letter <= 'Z';
+    const char c = is_capital ? static_cast<char>(letter - 'A' + 'a') : letter;
     const bool is_part = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80U;
+    if ((!is_part || (is_capital && is_small)) && !word.empty()) words.push_back(std::exchange(word, {}));
     if (is_part) word += c;
-    if (!is_part && !word.empty()) words.push_back(std::exchange(word, {}));
+    is_small = letter >= 'a' && letter <= 'z';
   }
   if (!word.empty()) words.push_back(word);
   return words;
@@ -113,14 +117,24 @@ NameSays what_name_says(std::string_view name) {
   if (is_one_of(states, word)) return NameSays::state;
   if (word == "count") return NameSays::count;
   const std::vector<std::string> words = words_of_name(name);
+  if (words.size() > 1 && words.front() == "g") return NameSays::nothing;  // openHAB's gMotion, a group
   const bool counts_something = std::ranges::find(words, "count") != words.end();
-  if (begins_with_one_of(words, counts) || (counts_something && begins_with_one_of(words, presences)))
+  constexpr std::array countable{"occup", "presence", "person"};
+  if (begins_with_one_of(words, counts) || (counts_something && begins_with_one_of(words, countable)))
     return NameSays::count;
   if (begins_with_one_of(words, motions)) return NameSays::motion;
   if (begins_with_one_of(words, presences)) return NameSays::presence;
   if (begins_with_one_of(words, quantities)) return NameSays::other_quantity;
   if (begins_with_one_of(words, devices)) return NameSays::other_device;
   return NameSays::nothing;
+}
+
+int rank_as_time(std::string_view name) {
+  constexpr std::array surest{"time", "timestamp", "ts", "last_changed"};
+  constexpr std::array late{"received", "created_at", "last_updated"};
+  const std::string word = small(name);
+  if (is_one_of(surest, word)) return 3;
+  return what_name_says(name) == NameSays::time && !is_one_of(late, word) && !word.ends_with("_ts") ? 2 : 1;
 }
 
 std::string quoted_yaml(const std::string& text) {

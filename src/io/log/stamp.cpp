@@ -77,10 +77,16 @@ class Scanner {
 
 struct Parts {
   int first = 0, second = 0, third = 0;
-  bool has_year_last = false, has_dots = false;
+  bool has_short_year = false, has_year_last = false, has_dots = false;
 };
 
 std::optional<Parts> date_parts(Scanner& scan) {
+  Scanner digits = scan;
+  const auto all = digits.number(8);
+  if (all && all->digits == 8 && (digits.front() == ' ' || digits.front() == 'T')) {
+    scan = digits;
+    return Parts{all->value / 10'000, all->value / 100 % 100, all->value % 100};
+  }
   const auto first = scan.number(4);
   const char between = scan.front();
   if (!first || !scan.take_one_of("-/.")) return std::nullopt;
@@ -91,22 +97,30 @@ std::optional<Parts> date_parts(Scanner& scan) {
   const bool year_first = first->digits == 4 && third->digits <= 2;
   const bool year_last = first->digits <= 2 && (third->digits == 4 || third->digits == 2);
   if (!year_first && !year_last) return std::nullopt;
-  Parts parts{first->value, second->value, third->value, year_last, between == '.'};
-  if (year_last && third->digits == 2) parts.third += 2000;
-  return parts;
+  return Parts{first->value, second->value, third->value, year_last && third->digits == 2, year_last, between == '.'};
 }
 
-LogMap::Dates order_of(const Parts& parts) {
+LogMap::Dates order_of_year_last(const Parts& parts) {
   if (parts.has_dots || parts.first > 12) return LogMap::Dates::day_first;
   if (parts.second > 12) return LogMap::Dates::month_first;
   return LogMap::Dates::found;
 }
 
+/// A year of two digits may be the first number as well as the last.
+LogMap::Dates order_of(const Parts& parts) {
+  constexpr int days = 31, months = 12;
+  if (!parts.has_short_year || parts.second > months || parts.third > days) return order_of_year_last(parts);
+  return parts.first > days ? LogMap::Dates::year_first : LogMap::Dates::found;
+}
+
 std::optional<std::int64_t> midnight(const Parts& parts, LogMap::Dates order) {
+  constexpr int century = 2000;
   int year = parts.first, month = parts.second, day = parts.third;
-  if (parts.has_year_last) {
-    if (order == LogMap::Dates::found || parts.has_dots) order = order_of(parts);
-    year = parts.third;
+  if (parts.has_short_year && order == LogMap::Dates::year_first) {
+    year += century;
+  } else if (parts.has_year_last) {
+    if (order == LogMap::Dates::found || parts.has_dots) order = order_of_year_last(parts);
+    year = parts.third + (parts.has_short_year ? century : 0);
     month = order == LogMap::Dates::day_first ? parts.second : parts.first;
     day = order == LogMap::Dates::day_first ? parts.first : parts.second;
   }
@@ -229,11 +243,29 @@ std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order) {
   return Stamp{Stamp::Kind::absolute, *day + *time - ahead.s * us_per_s, ahead.s, 0.0};
 }
 
-std::optional<LogMap::Dates> order_of_date(std::string_view text) {
+std::optional<DateOrder> order_of_date(std::string_view text) {
   Scanner scan(trimmed(text));
   const auto parts = date_parts(scan);
   if (!parts || !parts->has_year_last) return std::nullopt;
-  return order_of(*parts);
+  return DateOrder{order_of(*parts), order_of_year_last(*parts), parts->first, parts->third};
+}
+
+bool is_date_of_digits(std::string_view text) {
+  const auto stamp = parse_stamp(std::string(trimmed(text)) + " 0:00", LogMap::Dates::found);
+  return trimmed(text).size() == 8 && std::ranges::all_of(trimmed(text), is_digit) && stamp;
+}
+
+bool is_half_of_day(std::string_view text) {
+  Scanner scan(trimmed(text));
+  return (scan.take_word("am") || scan.take_word("pm") || scan.take_word("a.m.") || scan.take_word("p.m.")) &&
+         scan.at_end();
+}
+
+bool is_offset(std::string_view text) {
+  text = trimmed(text);
+  const bool is_short = (text.starts_with('+') || text.starts_with('-')) && text.size() < 5;
+  Scanner scan(text);
+  return !text.empty() && !is_short && offset(scan).kind == Offset::Kind::given;
 }
 
 }  // namespace pirsim::io

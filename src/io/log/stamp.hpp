@@ -24,12 +24,25 @@ struct Stamp {
 };
 
 /// ISO 8601, what spreadsheets make of it, and JavaScript's local times: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00",
-/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "0:00:34", "1743962401"; none for any other text. `order` counts
-/// where the year comes last; months come first if neither it nor the numbers say otherwise. Days that don't exist, as
-/// 2025-02-30, are none.
+/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "20190524 19:50:03", "0:00:34", "1743962401"; none for any other
+/// text. `order` counts where the year has two digits or comes last; months come first if neither it nor the numbers
+/// say otherwise. Days that don't exist, as 2025-02-30, are none.
 [[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order);
 
-/// What a text with a date tells of the order of dates; found: nothing, none: it has no date that ends in a year.
-[[nodiscard]] std::optional<LogMap::Dates> order_of_date(std::string_view text);
+/// What a text with a date tells of the order of dates; none: it has no date, or one that begins with a year of four
+/// digits.
+struct DateOrder {
+  LogMap::Dates order = LogMap::Dates::found;      ///< found: it leaves that open
+  LogMap::Dates year_last = LogMap::Dates::found;  ///< the same, if the year is known to be last
+  int first = 0, last = 0;                         ///< its numbers
+};
+[[nodiscard]] std::optional<DateOrder> order_of_date(std::string_view text);
+
+/// "20260514": eight digits that are a date.
+[[nodiscard]] bool is_date_of_digits(std::string_view text);
+/// "AM", "p.m."
+[[nodiscard]] bool is_half_of_day(std::string_view text);
+/// "UTC", "Z", "+0200", "-05:30": but not "+02".
+[[nodiscard]] bool is_offset(std::string_view text);
 
 }  // namespace pirsim::io

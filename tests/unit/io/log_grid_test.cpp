@@ -264,6 +264,7 @@ std::string compared(const Case& one, const Truth& truth, const Log& log) {
       n_wrong += state != log_state::unknown && state != (truth.is_on(of, from, from + window) ? 1 : 0) ? 1 : 0;
     }
   }
+  if (n_all == 0 && truth.end > 300 * s) return "no window of its time";
   if (n_wrong > 0) return std::to_string(n_wrong) + " wrong windows of " + std::to_string(n_all);
   if (20 * n_unknown > (one.loses_rows ? 4 : 1) * n_all + 60)
     return std::to_string(n_unknown) + " unknown windows of " + std::to_string(n_all);
@@ -306,4 +307,172 @@ TEST_CASE("a grid of made logs: each is read rightly, or refused with a map that
   }
   INFO(table);
   CHECK(20 * n_refused < n);
+}
+
+// What stands beside the time, how rows come, and what several files tell.
+
+namespace {
+
+enum class Trap {
+  half_of_day,
+  digits,
+  own_offset,
+  two_times,
+  number_and_text,
+  short_year,
+  padded,
+  truth_beside,
+  file_each,
+  one_name,
+  long_readings,
+  jitter,
+  polls
+};
+constexpr std::size_t n_traps = 13;
+constexpr std::array<const char*, n_traps> trap_names{"AM and PM beside the time",
+                                                      "dates of digits",
+                                                      "an offset beside the time",
+                                                      "two columns of times",
+                                                      "numbers beside dates",
+                                                      "years of two digits",
+                                                      "padded names",
+                                                      "a truth beside sensors",
+                                                      "a file a sensor",
+                                                      "two files of a name",
+                                                      "readings of one at a time",
+                                                      "readings with jitter",
+                                                      "polls at any time"};
+
+Texts events_of(Trap trap, const Case& one, const Truth& truth, Dice& dice) {
+  const std::size_t how = dice.below(3);
+  const std::array two_names{"time", "timestamp", "ts", "happened"};
+  const std::array late_names{"received", "created_at", "written"};
+  const std::string name = dice.one_of(two_names), late = dice.one_of(late_names);
+  const bool has_header = dice.below(3) > 0, is_late_first = dice.below(2) == 0;
+  const std::array headers{"date,time,ampm", "date,time", "date,time,zone"};
+  std::string text;
+  if (trap == Trap::two_times) text = is_late_first ? late + ',' + name : name + ',' + late;
+  if (trap == Trap::number_and_text) text = name == "happened" ? "ts,changed" : name + ",changed";
+  if (trap == Trap::short_year || trap == Trap::padded) text = "time";
+  if (trap <= Trap::own_offset && has_header) text = headers[static_cast<std::size_t>(trap)];
+  if (!text.empty()) text += ",sensor,state\n";
+  for (const Change& change : changes_in(truth, {"off", "on"})) {
+    const std::string full = stamp(change.at, 0), date = full.substr(0, 10), hour = full.substr(11);
+    std::string time = full;
+    if (trap == Trap::half_of_day) {
+      const int h = std::stoi(hour.substr(0, 2));
+      time = date + ',' + std::to_string((h + 11) % 12 + 1) + hour.substr(2) + (h < 12 ? ",AM" : ",PM");
+    } else if (trap == Trap::digits) {
+      time = date.substr(0, 4) + date.substr(5, 2) + date.substr(8) + ',' + hour;
+    } else if (trap == Trap::own_offset) {
+      const std::array offsets{"UTC", "+0000", "+00:00"};
+      time = date + ',' + hour + ',' + offsets[how];
+    } else if (trap == Trap::two_times) {
+      const std::string batch = stamp((change.at / (300 * s) + 1) * 300 * s, 0);
+      time = is_late_first ? batch + ',' + full : full + ',' + batch;
+    } else if (trap == Trap::number_and_text) {
+      time = stamp(change.at, 2) + ',' + stamp(change.at / (1800 * s) * 1800 * s, 0);
+    } else if (trap == Trap::short_year) {
+      const std::string year = date.substr(2, 2), month = date.substr(5, 2), day = date.substr(8);
+      const char between = how == 0 ? '-' : how == 1 ? '/' : '.';
+      time = (is_late_first ? year + between + month + between + day : day + between + month + between + year) + ' ' +
+             hour;
+    }
+    const std::string pad = trap == Trap::padded && dice.below(2) == 0 ? " " : "";
+    text += time + ',' + pad + one.names[change.sensor] + pad + ',' + change.state + '\n';
+  }
+  return {text};
+}
+
+Texts rows_of(Trap trap, const Case& one, const Truth& truth, Dice& dice) {
+  std::string text = "time", more;
+  if (trap == Trap::file_each || trap == Trap::one_name) {
+    Texts files;
+    for (std::size_t i = 0; i < 2; ++i) {
+      std::string& file = files.emplace_back("time," + (trap == Trap::one_name ? "motion" : one.names[i]) + '\n');
+      for (const Change& change : changes_in(truth, {"0", "1"}))
+        if (change.sensor == i) file += stamp(change.at, 0) + ',' + change.state + '\n';
+    }
+    return files;
+  }
+  const std::array truths{"ground_truth", "isOccupied", "personCount", "frontDoor", "Anwesenheit", "label"};
+  if (trap == Trap::long_readings) text += ",device,motion";
+  for (const std::string& name : one.names) text += trap == Trap::long_readings ? "" : ',' + name;
+  if (trap == Trap::truth_beside) text += std::string(",") + dice.one_of(truths);
+  text += '\n';
+  std::int64_t before = 0;
+  for (std::int64_t at = one.interval; at <= truth.end;) {
+    const std::string time = stamp(at, 0);
+    text += trap == Trap::long_readings ? "" : time;
+    for (std::size_t i = 0; i < one.n_sensors; ++i) {
+      const bool is_on = truth.is_on(i, trap == Trap::polls ? at : before, trap == Trap::polls ? at + 1 : at);
+      const std::string state = is_on ? "1" : "0";
+      text += trap == Trap::long_readings ? time + ',' + one.names[i] + ',' + state + '\n' : ',' + state;
+    }
+    if (trap == Trap::truth_beside) text += at / (1200 * s) % 2 == 0 ? ",0" : ",1";
+    text += trap == Trap::long_readings ? "" : "\n";
+    before = at;
+    const auto jitter = static_cast<std::int64_t>(dice.below(static_cast<std::size_t>(one.interval / s))) * s;
+    at += trap == Trap::jitter  ? one.interval / 2 + jitter
+          : trap == Trap::polls ? s + std::llround(dice.after(static_cast<double>(one.interval) / 1e3)) * s
+                                : one.interval;
+  }
+  return {text};
+}
+
+}  // namespace
+
+TEST_CASE("a grid of traps: each log is read rightly, or refused", "[seconds]") {
+  constexpr std::size_t n = 650;
+  const TemporaryFolder folder;
+  std::array<std::array<std::size_t, 2>, n_traps> found{};  // read, refused
+  std::array<std::string, n_traps> refusals;
+  for (std::size_t i = 0; i < n; ++i) {
+    Dice dice(static_cast<std::uint32_t>(70'000 + i));
+    const auto trap = static_cast<Trap>(i % n_traps);
+    Case one = case_of(dice);
+    const bool are_rows = trap >= Trap::long_readings || trap == Trap::truth_beside;
+    one.form = are_rows ? Form::readings : Form::events;
+    one.names = {"hall_motion", "desk_motion"};
+    one.n_sensors = 2;
+    one.has_count = one.has_gap = one.is_in_ms = one.loses_rows = false;
+    one.n_rows = std::max<std::size_t>(one.n_rows, 100);
+    one.interval = (trap >= Trap::jitter ? 30 : 10) * s;
+    const Truth truth = truth_of(one, dice);
+    const Texts texts =
+        trap >= Trap::truth_beside ? rows_of(trap, one, truth, dice) : events_of(trap, one, truth, dice);
+    std::vector<std::filesystem::path> files;
+    for (std::size_t k = 0; k < texts.size(); ++k)
+      files.push_back(folder.write("log" + std::to_string(k) + ".csv", texts[k]));
+    LogMap map;
+    if (trap == Trap::own_offset) map.time_zone = "Europe/Berlin";
+    std::string fault;
+    auto& [read, refused] = found[i % n_traps];
+    try {
+      const Log log = io::read_log(files, map);
+      ++read;
+      one.has_count = log.map.people == "personCount";
+      const bool is_uneven = trap == Trap::jitter || trap == Trap::polls;  // no window has one reading's truth
+      fault = !is_uneven ? compared(one, truth, log) : log.has_readings() ? "" : "rows of changes";
+    } catch (const Error& error) {
+      ++refused;
+      refusals[i % n_traps] = error.what();
+      CHECK(error.code() == ErrorCode::input);
+    }
+    INFO("log " << i << " (" << trap_names[i % n_traps] << "): " << fault << "\n" << texts[0].substr(0, 1500));
+    CHECK(fault.empty());
+  }
+  std::string table;
+  for (std::size_t i = 0; i < n_traps; ++i) {
+    table += std::string(trap_names[i]) + ": read " + std::to_string(found[i][0]) + ", refused " +
+             std::to_string(found[i][1]) + ' ' + refusals[i] + '\n';
+  }
+  INFO(table);
+  const auto all_read = [&](Trap trap) { return found[static_cast<std::size_t>(trap)][1] == 0; };
+  for (const Trap trap :
+       {Trap::half_of_day, Trap::digits, Trap::own_offset, Trap::number_and_text, Trap::padded, Trap::file_each})
+    CHECK(all_read(trap));
+  for (const Trap trap : {Trap::two_times, Trap::truth_beside, Trap::jitter})
+    CHECK(found[static_cast<std::size_t>(trap)][0] > 10);
+  CHECK(found[static_cast<std::size_t>(Trap::one_name)][0] == 0);
 }

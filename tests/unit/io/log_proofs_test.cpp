@@ -217,9 +217,35 @@ TEST_CASE("what is called occupancy or presence is a sensor, unless a map says t
 }
 
 TEST_CASE("one column that is always the other's opposite is no second sensor") {
-  std::string text = "time,motion,clear\n";
+  std::string text = "time,moving,clear\n";
   for (int i = 1; i < 40; ++i) text += std::to_string(10 * i) + (i / 3 % 2 == 0 ? ",0,1\n" : ",1,0\n");
-  CHECK(sensors_of(settled(text)[0]) == Texts{"motion"});
+  CHECK(sensors_of(settled(text)[0]) == Texts{"moving"});
+}
+
+TEST_CASE("a column of states that no name calls motion, beside ones that are called so, is left out and told") {
+  const auto rows = [](const std::string& header) {
+    std::string text = header + '\n';
+    for (int i = 1; i < 40; ++i)
+      text += std::to_string(10 * i) + ',' + std::to_string(i / 3 % 2) + ',' + std::to_string(i / 7 % 2) + '\n';
+    return text;
+  };
+  const Log log = read_log_text(rows("time,hall_motion,Anwesenheit"));
+  CHECK(sensors_of(log) == Texts{"hall_motion"});
+  REQUIRE(log.remarks.size() == 1);
+  CHECK(log.remarks.front().message.starts_with("column 'Anwesenheit' holds states"));
+  CHECK(sensors_of(read_log_text(rows("time,hall,Anwesenheit"))).size() == 2);
+  CHECK(sensors_of(read_log_text(rows("time_s,hall_motion,desk"))).size() == 2);  // pirsim's own
+  CHECK(read_log_text(rows("time,hallMotion,frontDoor")).remarks.empty());
+  CHECK(read_log_text(rows("time,hallMotion,personCount")).people);
+}
+
+TEST_CASE("few changes between a beat's steps may be changes or readings") {
+  std::string text = "time,A\n";
+  for (int i = 0; i < 60; ++i) {
+    text += std::to_string(60 * i) + (i >= 5 && i < 7 ? ",1\n" : ",0\n");
+    if (i == 4 || i == 6) text += std::to_string(60 * i + 17) + (i == 4 ? ",1\n" : ",0\n");
+  }
+  CHECK(settled(text)[0].has_readings());
 }
 
 TEST_CASE("a table whose series were joined by time: an empty cell is no change") {

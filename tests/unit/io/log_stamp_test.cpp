@@ -69,9 +69,19 @@ TEST_CASE("what is no time") {
 
 TEST_CASE("the order of day and month, where the date tells it") {
   using Dates = LogMap::Dates;
-  CHECK(io::order_of_date("12/22/2017 0:00") == Dates::month_first);
-  CHECK(io::order_of_date("22/12/2017") == Dates::day_first);
-  CHECK(io::order_of_date("01.02.2017") == Dates::day_first);
-  CHECK(io::order_of_date("01/02/2017") == Dates::found);
+  const auto order = [](const char* text) { return io::order_of_date(text).value().order; };
+  CHECK(order("12/22/2017 0:00") == Dates::month_first);
+  CHECK(order("22/12/2017") == Dates::day_first);
+  CHECK(order("01.02.2017") == Dates::day_first);
+  CHECK(order("01/02/2017") == Dates::found);
   CHECK_FALSE(io::order_of_date("2017/01/02"));
+  // Of two digits, the year may be first.
+  for (const char* text : {"26-05-14", "14.05.26", "14/05/26", "01/02/26"}) CHECK(order(text) == Dates::found);
+  CHECK(order("5/14/26") == Dates::month_first);
+  CHECK(order("32-05-14") == Dates::year_first);
+  CHECK(order("14.05.32") == Dates::day_first);
+  const auto us = [](const char* text, Dates dates) { return parse_stamp(text, dates).value().us; };
+  CHECK(us("26-05-14 06:00", Dates::year_first) == us("2026-05-14 06:00", Dates::found));
+  CHECK(us("26-05-14 06:00", Dates::day_first) == us("2014-05-26 06:00", Dates::found));
+  CHECK(us("20260514 06:00", Dates::found) == us("2026-05-14 06:00", Dates::found));
 }
