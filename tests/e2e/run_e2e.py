@@ -457,7 +457,7 @@ class Light(unittest.TestCase):
         told = pirsim("control", weeks, "--report", self.folder / "light.html")
         self.assertIn(sentence, told.stdout)
         self.assertIn(sentence, (self.folder / "light.html").read_text())
-        self.assertIn("too few to tell which delay goes off on somebody less than 0.5 times a week: 42 without",
+        self.assertIn("too few to tell which delay goes off on somebody less than 0.5 times a week: 42 days without",
                       pirsim("control", weeks, "--at-most", 0.5).stdout)
         self.assertIn("--delay: 5 is given twice", pirsim("control", weeks, "--delay", 5, 1, 5, code=2).stderr)
         twice = write(self.folder, "twice.yaml", "pirsim_control: 1\nlights: [{sensors: [PIR1, PIR1], together: {sensors: 2}}]\n")

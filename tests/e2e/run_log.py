@@ -288,6 +288,18 @@ class Database(Case):
         base.close()
         self.assertEqual(self.motion(path)[0], {"hall": "00111....1.", "desk": "...00.11..."})
 
+    def test_after_a_crash_nothing_is_known_from_the_last_state_on(self):
+        for version, end in ((25, None), (48, 8.5)):  # which Home Assistant writes when it begins again
+            with self.subTest(version):
+                path, base = self.make(version, runs=[(0, end), (8.5, None)])
+                base.execute("ALTER TABLE recorder_runs ADD COLUMN closed_incorrect BOOLEAN")
+                base.execute("UPDATE recorder_runs SET closed_incorrect = 1 WHERE run_id = 1")
+                base.commit()
+                base.close()
+                rows = self.motion(path)[0]
+                self.assertEqual({name: row[8] for name, row in rows.items()}, {"hall": ".", "desk": "."})
+                self.assertEqual(rows["hall"][:5], HOME_ROWS["hall"][:5])
+
     def test_other_databases_and_other_ways(self):
         path, base = self.make(48)
         base.close()

@@ -68,7 +68,10 @@ std::string in_sql(const std::string& text) {
   return quoted + '\'';
 }
 
-std::string line_of(std::int64_t us, const std::string& entity, const std::string& state) {
+/// A row of a table of tabs. A text that holds one, or a quote, is no motion sensor's.
+std::string line_of(std::int64_t us, const std::string& entity, std::string state) {
+  std::ranges::replace_if(
+      state, [](char c) { return c == '"' || (c >= 0 && c < ' '); }, ' ');
   return fixed(static_cast<double>(us) / us_per_s, 6) + '\t' + entity + '\t' + state;
 }
 
@@ -154,14 +157,32 @@ std::string HomeDatabase::query(std::span<const std::string> entities) const {
          ", s.state_id";
 }
 
+/// When the last state before this moment was written.
+std::optional<std::int64_t> HomeDatabase::last_before(std::int64_t us, const std::string& text) const {
+  const bool has_numbers = has_column("states", "last_updated_ts");
+  const Statement last =
+      prepare(has_numbers ? "SELECT MAX(last_updated_ts) FROM states WHERE last_updated_ts < " +
+                                fixed(static_cast<double>(us) / us_per_s, 6)
+                          : "SELECT MAX(last_updated) FROM states WHERE last_updated < " + in_sql(text));
+  if (!step(last) || sqlite3_column_type(last.get(), 0) == SQLITE_NULL) return std::nullopt;
+  const auto at = has_numbers
+                      ? std::optional<std::int64_t>(std::llround(sqlite3_column_double(last.get(), 0) * us_per_s))
+                      : moment_of(text_of(last.get(), 0));
+  return at ? std::optional(*at + 1) : std::nullopt;
+}
+
 void HomeDatabase::read_stops() {
   if (!has_column("recorder_runs", "start") || !has_column("recorder_runs", "end")) return;
-  const Statement runs = prepare(R"(SELECT start, "end" FROM recorder_runs ORDER BY start)");
+  const std::string crashed = has_column("recorder_runs", "closed_incorrect") ? "closed_incorrect" : "0";
+  const Statement runs = prepare("SELECT start, \"end\", " + crashed + " FROM recorder_runs ORDER BY start");
   std::optional<std::int64_t> ended;
-  while (step(runs)) {
+  for (bool is_first = true; step(runs); is_first = false) {
     const auto begun = moment_of(text_of(runs.get(), 0));
+    // Of a run that crashed Home Assistant writes that it ended when the next one began.
+    if (!is_first && begun && !ended) ended = last_before(*begun, text_of(runs.get(), 0));
     if (ended && begun && *begun > *ended) stops_us_.push_back(*ended);
-    ended = moment_of(text_of(runs.get(), 1));
+    const bool has_crashed = sqlite3_column_int(runs.get(), 2) != 0;
+    ended = has_crashed ? std::nullopt : moment_of(text_of(runs.get(), 1));
   }
   std::ranges::reverse(stops_us_);
 }

@@ -51,6 +51,7 @@ class HomeDatabase {
   [[nodiscard]] bool has_rows(const std::string& sql) const;
   [[nodiscard]] std::string query(std::span<const std::string> entities) const;
   void read_stops();
+  [[nodiscard]] std::optional<std::int64_t> last_before(std::int64_t us, const std::string& text) const;
   [[nodiscard]] std::optional<Row> next_row();
   [[noreturn]] void fail() const;
 

@@ -358,7 +358,7 @@ void LogFile::take(std::string_view line, int number) {
   if (readings_) {
     take_readings(*us, number);
   } else if (!is_disordered) {
-    take_changes(*us);
+    take_changes(*us, number);
   } else {
     remark("backward", number, [] { return "the times step back here; rows up to the last time are left out"; });
   }
@@ -415,13 +415,14 @@ void LogFile::take_readings(std::int64_t us, int line) {
     throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
 }
 
-void LogFile::take_changes(std::int64_t us) {
+void LogFile::take_changes(std::int64_t us, int line) {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!last_values_.empty() && last_values_[i] == values_[i]) continue;
     const bool is_people = i == shape_.sensors.size();
-    EventTracks::Track& track = *reading_.events.track(shape_.names[is_people ? *shape_.people : shape_.sensors[i]]);
-    ++track.n_states;
-    reading_.events.add(track, us, values_[i]);
+    EventTracks::Track* track = track_of(shape_.names[is_people ? *shape_.people : shape_.sensors[i]], line);
+    if (track == nullptr) return;
+    ++track->n_states;
+    reading_.events.add(*track, us, values_[i]);
   }
   last_values_ = values_;
 }
@@ -441,16 +442,20 @@ void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::in
   }
 }
 
-EventTracks::Track* LogFile::track_of_row(int line) {
-  std::string_view& name = fields_[shape_.sensor];
-  while (name.starts_with(' ')) name.remove_prefix(1);
-  while (name.ends_with(' ')) name.remove_suffix(1);
+EventTracks::Track* LogFile::track_of(std::string_view name, int line) {
   EventTracks::Track* track = reading_.events.track(name);
   if (track == nullptr) {
     fault("sensors", line, shape_.sensor,
           [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
   }
   return track;
+}
+
+EventTracks::Track* LogFile::track_of_row(int line) {
+  std::string_view& name = fields_[shape_.sensor];
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  while (name.ends_with(' ')) name.remove_suffix(1);
+  return track_of(name, line);
 }
 
 void LogFile::take_interval(std::int64_t us, int line) {

@@ -78,9 +78,10 @@ class LogFile {
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
   void take_readings(std::int64_t us, int line);
-  void take_changes(std::int64_t us);
+  void take_changes(std::int64_t us, int line);
   void take_event(std::int64_t us, int line);
   void take_interval(std::int64_t us, int line);
+  [[nodiscard]] EventTracks::Track* track_of(std::string_view name, int line);
   [[nodiscard]] EventTracks::Track* track_of_row(int line);
   void require_few_events(int line) const;
   void take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line);

@@ -207,7 +207,8 @@ bool are_opposites(std::span<const StateRow> rows, std::size_t a, std::size_t b)
   std::size_t n_known = 0, n_turns = 0;
   std::int32_t before = log_state::unknown;
   for (const StateRow& row : rows) {
-    if (row.states[a] == log_state::unknown || row.states[b] == log_state::unknown) continue;
+    const auto is_known = [](std::int32_t state) { return state == log_state::on || state == log_state::off; };
+    if (!is_known(row.states[a]) || !is_known(row.states[b])) continue;
     if (row.states[a] == row.states[b]) return false;
     n_turns += n_known > 0 && row.states[a] != before ? 1 : 0;
     before = row.states[a];

@@ -113,10 +113,10 @@ bool may_be_sensor(const EventTracks::Track& track) {
 }
 
 /// Which of the tracks are motion sensors, if no map says so.
-std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks) {
+std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks, const std::string& people) {
   std::vector<std::size_t> all, motion, casas;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (!may_be_sensor(tracks[i])) continue;
+    if (!may_be_sensor(tracks[i]) || (!people.empty() && tracks[i].in_log == people)) continue;
     const NameSays says = what_name_says(tracks[i].in_log);
     if (is_casas_motion(tracks[i].in_log)) casas.push_back(i);
     if (says == NameSays::motion || says == NameSays::presence) motion.push_back(i);
@@ -136,9 +136,11 @@ std::vector<std::string> names_of(const std::vector<EventTracks::Track>& tracks)
 /// In the map's order, or by name.
 std::vector<std::size_t> chosen_sensors(const std::vector<EventTracks::Track>& tracks, const LogMap& map,
                                         const Where& where) {
-  if (map.sensors.empty()) return motion_sensors(tracks);
+  if (map.sensors.empty()) return motion_sensors(tracks, map.people);
   std::vector<std::size_t> chosen;
   for (const LogMap::Sensor& sensor : map.sensors) {
+    if (sensor.in_log == map.people)
+      throw Error(ErrorCode::input, where, "'" + map.people + "' can't be a sensor and the people");
     const auto found = std::ranges::find(tracks, sensor.in_log, &EventTracks::Track::in_log);
     if (found == tracks.end())
       throw Error(ErrorCode::input, where,
@@ -241,6 +243,10 @@ void finish_events(Log& log, LogReading& reading) {
   std::vector<EventTracks::Track>& tracks = reading.events.tracks();
   const Where where{log.files.front().path};
   const std::vector<std::size_t> chosen = chosen_sensors(tracks, log.map, where);
+  const std::string& people = log.map.people;
+  if (!people.empty() && std::ranges::find(tracks, people, &EventTracks::Track::in_log) == tracks.end())
+    throw Error(ErrorCode::input, where,
+                "the log has no events of '" + people + "'" + near_or_all(people, names_of(tracks)));
   log.begin_us = std::max(*reading.first_us, reading.from_us.value_or(*reading.first_us));
   const std::int64_t after_last = *reading.last_us + 1;  // which belongs to it
   log.end_us = std::min(after_last, reading.to_us.value_or(after_last));
@@ -275,9 +281,9 @@ void finish_events(Log& log, LogReading& reading) {
     throw Error(
         ErrorCode::input, where,
         with_maps("no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called a "
-                  "door's or a switch's; it has events of " +
-                      joined(first, ", "),
-                  {"sensors: [" + quoted_yaml(log.others.front()) + "]"}));
+                  "door's or a switch's" +
+                      (first.empty() ? std::string() : "; it has events of " + joined(first, ", ")),
+                  {"sensors: [" + (first.empty() ? std::string("COLUMN") : quoted_yaml(first.front())) + "]"}));
   }
 }
 

@@ -23,7 +23,14 @@ namespace {
 class Finder {
  public:
   Finder(const HeadTable& table, const LogMap& map, LogZone* zone)
-      : table_(table), map_(map), time_finder_(table, map, zone) {}
+      : table_(table), map_(map), time_finder_(table, map, zone), states_(table.n_columns()) {
+    for (const auto& row : table.rows) {
+      for (std::size_t i = 0; i < states_.size(); ++i) {
+        const auto state = read_state(row[i]);
+        if (state && *state != log_state::unknown) states_[i].insert(*state);
+      }
+    }
+  }
 
   void find(LogShape& shape, LogMap::Rows before) {
     if (find_intervals(shape)) return;
@@ -71,12 +78,16 @@ class Finder {
     constexpr std::array<std::string_view, 6> ends{"end", "stop", "ended", "stopped", "finish", "to"};
     if (map_.form == LogMap::Form::wide || map_.form == LogMap::Form::events) return false;
     const bool is_told = map_.form == LogMap::Form::intervals || !map_.end.empty();
+    if (!is_told && is_told_wide()) return false;
     const std::vector<std::string> begin = map_.time.empty() ? times_called(begins) : map_.time;
     const std::vector<std::string> end = map_.end.empty() ? times_called(ends) : map_.end;
     if (begin.empty() || end.empty()) {
       if (is_told) table_.refuse("intervals need columns of their begins and ends; name them in a map: time and end");
       return false;
     }
+    // The range of a query, as InfluxDB tells it in each row.
+    const auto is_constant = [&](const std::string& name) { return table_.n_values(table_.named(name)) == 1; };
+    if (!is_told && table_.rows.size() > 1 && is_constant(begin.front()) && is_constant(end.front())) return false;
     shape.time = time_finder_.find(begin);
     shape.end = time_finder_.find(end);
     if (map_.time.empty() && map_.end.empty()) {
@@ -90,13 +101,23 @@ class Finder {
     return true;
   }
   void find_sensor_and_state(LogShape& shape) const {
-    std::vector<std::size_t> called, texts;
+    std::vector<std::size_t> called, texts, states, open;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       if (shape.time.has(i) || shape.end->has(i)) continue;
-      if (says(i) == NameSays::state && has_states(i)) shape.state = i;
+      const bool is_called_so =
+          says(i) == NameSays::state || says(i) == NameSays::motion || says(i) == NameSays::presence;
+      if (is_called_so && has_states(i)) states.push_back(i);
+      if (says(i) == NameSays::nothing && is_state_like(i) && known_states(i).size() > 1) open.push_back(i);
       if (says(i) == NameSays::sensor) called.push_back(i);
       if (is_text(i)) texts.push_back(i);
     }
+    if (map_.state_column.empty() && (states.size() > 1 || (states.empty() && !open.empty()))) {
+      const std::string& name = table_.names[states.empty() ? open.front() : states.front()];
+      table_.refuse_with("rows have a begin and an end, and '" + name + "' may be their state, or a sensor",
+                         {"form: intervals, state: " + quoted_yaml(name),
+                          "form: wide, rows: readings, time: " + quoted_yaml(table_.names[shape.end->first])});
+    }
+    if (!states.empty()) shape.state = states.front();
     if (!map_.state_column.empty()) shape.state = table_.named(map_.state_column);
     const std::vector<std::size_t>& sensors = called.empty() ? texts : called;
     if (map_.sensor_column.empty() && sensors.size() != 1) {
@@ -122,14 +143,7 @@ class Finder {
   }
 
   [[nodiscard]] bool has_states(std::size_t column) const { return !known_states(column).empty(); }
-  [[nodiscard]] std::set<std::int32_t> known_states(std::size_t column) const {
-    std::set<std::int32_t> states;
-    for (const auto& row : table_.rows) {
-      const auto state = read_state(row[column]);
-      if (state && *state != log_state::unknown) states.insert(*state);
-    }
-    return states;
-  }
+  [[nodiscard]] const std::set<std::int32_t>& known_states(std::size_t column) const { return states_[column]; }
   [[nodiscard]] bool is_text(std::size_t column) const {
     return table_.is_mostly(
         column, [](const std::string& text) { return !text.empty() && !is_number(text) && !read_state(text); });
@@ -193,6 +207,10 @@ class Finder {
     if (!map_.people.empty()) names.push_back(map_.people);
     return names;
   }
+  [[nodiscard]] bool is_told_wide() const {
+    return map_.rows != LogMap::Rows::found || map_.interval_s ||
+           std::ranges::any_of(told_names(), [&](const std::string& name) { return is_called(name); });
+  }
   [[nodiscard]] std::optional<SensorAndState> sensor_and_state() const {
     if (map_.form == LogMap::Form::wide) return std::nullopt;
     if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
@@ -200,10 +218,7 @@ class Finder {
         table_.refuse("a map of events names both columns, sensor and state");
       return SensorAndState{table_.named(map_.sensor_column), table_.named(map_.state_column)};
     }
-    const bool names_columns =
-        std::ranges::any_of(told_names(), [&](const std::string& name) { return is_called(name); });
-    const bool is_told_wide = map_.rows != LogMap::Rows::found || map_.interval_s || names_columns;
-    if (map_.form == LogMap::Form::found && is_told_wide) return std::nullopt;
+    if (map_.form == LogMap::Form::found && is_told_wide()) return std::nullopt;
     if (table_.header_line == 0) {
       if (const auto found = behind()) return found;
     }
@@ -303,8 +318,10 @@ class Finder {
   }
   /// Columns whose names and states prove each other.
   [[nodiscard]] std::optional<SensorAndState> proven() const {
+    constexpr std::size_t most = 20;  // assumed: tables of events are narrow, many columns of states are many sensors
     std::vector<SensorAndState> given, open;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (table_.n_columns() > most && is_state_like(i)) continue;
       const auto has = [&](const std::string& name) {
         return table_.count(i, [&](const std::string& text) { return text == name; }) > 0;
       };
@@ -551,6 +568,7 @@ class Finder {
   const HeadTable& table_;
   const LogMap& map_;
   TimeFinder time_finder_;
+  std::vector<std::set<std::int32_t>> states_;  ///< (columns) that are known
   TimeColumns time_;
   std::vector<std::optional<std::int64_t>> times_;  ///< of the rows
   bool are_words_ = false;                          ///< cut at spaces

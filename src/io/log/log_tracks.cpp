@@ -87,7 +87,15 @@ std::vector<LogChange> with_ends(const std::vector<LogChange>& events, const Mot
 std::vector<LogChange> changes_of(EventTracks::Track& track, const MotionEnds& ends,
                                   const std::function<void(std::int64_t)>& lost) {
   std::vector<LogChange> events = std::exchange(track.events, {});
-  if (!track.is_sorted) std::ranges::stable_sort(events, {}, &LogChange::us);
+  if (!track.is_sorted) {
+    std::size_t n_back = 0, n_on = 0;
+    for (std::size_t i = 1; i < events.size(); ++i) {
+      n_back += events[i].us < events[i - 1].us ? 1 : 0;
+      n_on += events[i].us > events[i - 1].us ? 1 : 0;
+    }
+    if (n_back > n_on) std::ranges::reverse(events);  // newest first, also what has one stamp
+    std::ranges::stable_sort(events, {}, &LogChange::us);
+  }
   if (ends.hold_us || ends.longest_us) events = with_ends(events, ends, lost);
   const auto same = [](const LogChange& a, const LogChange& b) { return a.value == b.value; };
   events.erase(std::unique(events.begin(), events.end(), same), events.end());

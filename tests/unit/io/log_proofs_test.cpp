@@ -279,6 +279,51 @@ TEST_CASE("rows that aren't later than those before are left out by a map alone"
   CHECK_FALSE(read_log_text(text, map).remarks.empty());
 }
 
+TEST_CASE("people of a map are an entity of the log, and no sensor") {
+  const std::string text =
+      "time,entity,state\n0,dev0,off\n1,X,1\n3,dev0,on\n4,dev1,on\n5,X,0\n9,dev1,off\n11,dev0,off\n12,X,1\n";
+  LogMap map;
+  map.people = "X";
+  const Log log = read_log_text(text, map);
+  CHECK(log.sensors.size() == 2);
+  REQUIRE(log.people);
+  map.people = "Y";
+  CHECK_THROWS_WITH(read_log_text(text, map), contains("the log has no events of 'Y'"));
+  map.people = "X";
+  map.sensors = {{"A", "X"}};
+  CHECK_THROWS_WITH(read_log_text(text, map), contains("'X' can't be a sensor and the people"));
+  map.sensors.clear();
+  map.form = LogMap::Form::events;
+  map.sensor_column = "entity", map.state_column = "state";
+  CHECK_THROWS_WITH(read_log_text("time,entity,state\n0,X,2\n5,X,3\n", map), contains("no motion sensor is in it"));
+}
+
+TEST_CASE("events newest first are read from their end, also those of one second") {
+  const std::string forward[] = {"0,A,off", "5,A,on",   "5,A,off", "9,A,on",
+                                 "9,A,off", "20,B,off", "21,B,on", "30,B,off"};
+  std::string oldest_first = "time,sensor,state\n", newest_first = oldest_first;
+  for (const std::string& line : forward) oldest_first += line + "\n";
+  for (auto line = std::rbegin(forward); line != std::rend(forward); ++line) newest_first += *line + "\n";
+  CHECK(read_log_text(newest_first).sensors[0].changes == read_log_text(oldest_first).sensors[0].changes);
+  CHECK(read_log_text(oldest_first).sensors[0].changes.back().value == log_state::off);
+}
+
+TEST_CASE("a sensor that is never available isn't another one's opposite") {
+  std::string text = "time,hall_motion,desk_motion\n";
+  for (int i = 1; i <= 40; ++i) text += std::to_string(30 * i) + (i / 3 % 2 == 0 ? ",0" : ",1") + ",unavailable\n";
+  CHECK(read_log_text(text).sensors.size() == 2);
+}
+
+TEST_CASE("a table of many columns of states is read in time that grows with its cells") {
+  std::string text = "time";
+  for (int k = 0; k < 300; ++k) text += ",c" + std::to_string(k);
+  for (int i = 0; i < 300; ++i) {
+    text += "\n" + std::to_string(30 * i);
+    for (int k = 0; k < 300; ++k) text += (i / (2 + k % 7)) % 2 == 0 ? ",0" : ",1";
+  }
+  CHECK(read_log_text(text + "\n").sensors.size() == 300);  // minutes, if each pair of columns is compared
+}
+
 TEST_CASE("times of day that run over midnight need a date") {
   const std::string evening =
       "time,sensor,state\n21:00:00,hall_motion,off\n22:00:00,hall_motion,on\n23:00:00,hall_motion,off\n";

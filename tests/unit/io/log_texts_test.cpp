@@ -155,6 +155,19 @@ TEST_CASE("intervals: on from begin to end, off at all other times, overlapping 
     CHECK(windows_of(read_log_text(text, io::parse_log_map(io::to_yaml(log.map), "map")), 1.0) == expected);
     CHECK(log.remarks.empty());
   }
+  const Log of_motion = read_log_text("start,end,sensor,motion\n0,3,A,1\n3,6,A,0\n6,8,A,1\n8,10,B,0\n");
+  CHECK(windows_of(of_motion, 1.0).front() == "11100011000");
+  const std::string active = "start,end,sensor,active\n0,3,A,yes\n3,6,A,no\n6,8,A,yes\n";
+  CHECK_THAT(fault_of(active), contains("'active' may be their state, or a sensor") && contains("state: \"active\""));
+  CHECK(windows_of(read_log_text(active, io::parse_log_map("{pirsim_log: 1, form: intervals, state: active}", "map")),
+                   1.0)
+            .front() == "11100011.");
+  CHECK_THAT(fault_of("start,end,room,PIR1,PIR2\n0,30,kitchen,0,1\n30,60,kitchen,1,0\n60,90,kitchen,0,0\n"),
+             contains("'PIR1' may be their state, or a sensor"));
+  const Log of_a_query = read_log_text(
+      "_start,_stop,_time,_value,entity_id\n0,99,1,1,hall_motion\n0,99,4,0,hall_motion\n"
+      "0,99,6,1,hall_motion\n0,99,9,0,hall_motion\n");
+  CHECK(of_a_query.map.form == LogMap::Form::events);
   const Log overlapping = read_log_text("start,end,sensor\n0,9,A\n2,4,A\n6,12,A\n12,13,A\n15,15,A\n20,21,A\n");
   CHECK(windows_of(overlapping, 1.0) == Texts{"111111111111100100001."});
   REQUIRE(overlapping.remarks.size() == 1);
