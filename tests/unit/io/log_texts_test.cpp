@@ -156,7 +156,7 @@ TEST_CASE("intervals: on from begin to end, off at all other times, overlapping 
     CHECK(log.remarks.empty());
   }
   const Log of_motion = read_log_text("start,end,sensor,motion\n0,3,A,1\n3,6,A,0\n6,8,A,1\n8,10,B,0\n");
-  CHECK(windows_of(of_motion, 1.0).front() == "11100011000");
+  CHECK(windows_of(of_motion, 1.0).front() == "1110001100.");
   const std::string active = "start,end,sensor,active\n0,3,A,yes\n3,6,A,no\n6,8,A,yes\n";
   CHECK_THAT(fault_of(active), contains("'active' may be their state, or a sensor") && contains("state: \"active\""));
   CHECK(windows_of(read_log_text(active, io::parse_log_map("{pirsim_log: 1, form: intervals, state: active}", "map")),
