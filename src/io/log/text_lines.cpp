@@ -46,7 +46,7 @@ std::optional<std::int64_t> esphome_time(std::string_view text) {
 
 bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
-/// "2026-01-25 10:20:47" out of what stands before a message, with its fraction if it has one.
+/// "2026-01-25 10:20:47" out of what stands before a message, with its fraction and its offset if it has them.
 std::string_view time_in(std::string_view text) {
   constexpr std::string_view pattern = "dddd-dd-dd?dd:dd:dd";
   const auto matches = [](char c, char wanted) {
@@ -55,7 +55,9 @@ std::string_view time_in(std::string_view text) {
   for (std::size_t at = 0; at + pattern.size() <= text.size(); ++at) {
     if (!std::ranges::equal(text.substr(at, pattern.size()), pattern, matches)) continue;
     const std::string_view rest = text.substr(at + pattern.size());
-    const std::size_t more = std::min(rest.find_first_not_of(".0123456789Z"), rest.size());
+    std::size_t more = std::min(rest.find_first_not_of(".0123456789Z"), rest.size());
+    if (more < rest.size() && (rest[more] == '+' || rest[more] == '-'))
+      more = std::min(rest.find_first_not_of("0123456789:", more + 1), rest.size());
     return text.substr(at, pattern.size() + more);
   }
   return text.substr(std::min(text.find_first_not_of(' '), text.size()));  // which the timer refuses by name

@@ -100,6 +100,14 @@ TEST_CASE("Zigbee2MQTT's log: properties that tell motion, and a device that is 
   CHECK(windows_of(read_log_text(text, log.map), 1.0) == motion);
   CHECK_THAT(fault_of(line("00", "lamp", R"({"state":"ON"})")),
              contains("none of the lines of Zigbee2MQTT's log tells that a sensor changed"));
+  const auto at_eight = [](const std::string& offset) {
+    std::string text;
+    for (const std::string state : {"false", "true"})
+      text += "[2026-05-14T20:00:0" + std::to_string(state == "true") + offset +
+              "] info: z2m:mqtt: MQTT publish: topic 'zigbee2mqtt/hall', payload '{\"occupancy\":" + state + "}'\n";
+    return read_log_text(text).begin_us;
+  };
+  CHECK(at_eight("Z") - at_eight("+02:00") == 7'200'000'000);
 }
 
 TEST_CASE("ESPHome's log: old and new words, colours, and days that pass without motion") {
