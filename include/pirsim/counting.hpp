@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pirsim/bits.hpp"
 #include "pirsim/interval.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::counting {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "pirsim/bits.hpp"
 #include "pirsim/log.hpp"
 #include "pirsim/reconcile_outcome.hpp"
+#include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 

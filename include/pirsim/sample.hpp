@@ -11,6 +11,11 @@
 
 namespace pirsim {
 
+// What stands in a row where nobody knows.
+inline constexpr std::uint8_t unknown_bit = 2;  ///< nobody knows; it counts for nothing
+inline constexpr std::uint8_t absent_bit = 3;   ///< the room of these rows has no such sensor, or no such door
+inline constexpr int unknown_people = -1, absent_people = -2;  ///< absent: the room has no such area
+
 // One row of output.
 
 /// The reading at the end of one window: bits cover the ticks (time_s - window, time_s], everything else is the

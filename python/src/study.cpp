@@ -9,7 +9,7 @@
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
-#include "pirsim/position_doubts.hpp"
+#include "pirsim/model.hpp"
 #include "pirsim/response.hpp"
 #include "run_arrays.hpp"
 

@@ -11,7 +11,7 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/position_doubts.hpp"
+#include "pirsim/model.hpp"
 #include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"

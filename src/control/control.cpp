@@ -8,7 +8,7 @@
 #include "control/day_sums.hpp"
 #include "control/light_switch.hpp"
 #include "core/text.hpp"
-#include "pirsim/bits.hpp"
+#include "pirsim/sample.hpp"
 #include "schema/areas.hpp"
 #include "schema/clock.hpp"
 

@@ -5,7 +5,7 @@
 #include "dataset/recipe.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/read/row_reader.hpp"
-#include "pirsim/bits.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::dataset {
 namespace {

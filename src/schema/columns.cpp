@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pirsim/bits.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim {
 namespace {

@@ -1,4 +1,5 @@
-#include "pirsim/position_doubts.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
 
 #include <algorithm>
 #include <array>

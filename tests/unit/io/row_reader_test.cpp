@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pirsim/bits.hpp"
+#include "pirsim/sample.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,5 +1,5 @@
 // Positions that a script takes for metres and seconds: which are doubted, and what they are said to look like.
-#include "pirsim/position_doubts.hpp"
+#include "pirsim/model.hpp"
 
 #include <cmath>
 #include <functional>
