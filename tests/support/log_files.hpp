@@ -14,6 +14,12 @@ inline pirsim::Log read_log_text(const std::string& text, const pirsim::LogMap& 
   return pirsim::io::read_log({&file, 1}, map);
 }
 
+inline std::vector<std::string> sensors_of(const pirsim::Log& log) {
+  std::vector<std::string> names;
+  for (const pirsim::LogTrack& track : log.sensors) names.push_back(track.name);
+  return names;
+}
+
 /// Its windows, an entry a sensor: "0", "1", and "." where nothing is known.
 inline std::vector<std::string> windows_of(const pirsim::Log& log, double window_s) {
   const pirsim::LogRows rows = pirsim::LogWindows(log, window_s).rows();

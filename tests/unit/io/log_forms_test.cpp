@@ -8,11 +8,6 @@ using Texts = std::vector<std::string>;
 
 namespace {
 
-Texts sensors_of(const Log& log) {
-  Texts names;
-  for (const LogTrack& track : log.sensors) names.push_back(track.name);
-  return names;
-}
 std::string first_time(const Log& log) { return to_text(LogWindows(log, 1.0).begin(0), log.clock); }
 
 }  // namespace

@@ -10,12 +10,6 @@ using Texts = std::vector<std::string>;
 
 namespace {
 
-Texts sensors_of(const Log& log) {
-  Texts names;
-  for (const LogTrack& track : log.sensors) names.push_back(track.name);
-  return names;
-}
-
 /// The maps that a refusal names.
 Texts maps_in(const std::string& message) {
   Texts maps;

@@ -9,11 +9,6 @@ using Texts = std::vector<std::string>;
 
 namespace {
 
-Texts sensors_of(const Log& log) {
-  Texts names;
-  for (const LogTrack& track : log.sensors) names.push_back(track.name);
-  return names;
-}
 std::string fault_of(const std::string& text, const LogMap& map = {}) {
   try {
     static_cast<void>(read_log_text(text, map));
