@@ -145,6 +145,8 @@ DUAL_DETECTOR = {
         "pulse_count": (2, "assumed: to suppress lone disturbances; considered: 1 to 4"),
         "pulse_window_s": (4.0, "assumed: range considered 2 to 8"),
         "pulse_signs": ("alternating", "assumed: as digital detectors offer; considered: any, alternating"),
+    },
+    "report": {
         "hold_s": (5.0, "assumed: adjustable on such modules, range considered 0.5 to 300"),
         "blind_s": (2.5, "assumed: the BISS0001's inhibit time, set by two parts; range considered 0.5 to 5"),
     },

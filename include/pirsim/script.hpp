@@ -37,6 +37,13 @@ enum class Reader {
   free_running  ///< each at a moment of its own, drawn once a run: as hardware that isn't in step with the rows
 };
 
+/// Which of a make's units each sensor is (SensitivitySpec).
+enum class Units {
+  typical,     ///< the mean one
+  guaranteed,  ///< the least sensitive one that the maker sells: for who plans
+  drawn        ///< each sensor its own, the same in all runs
+};
+
 struct SensingSpec {
   int tick_rate_hz = 50;
   int ticks_per_window = 50;  ///< a row and its bits cover this many ticks
@@ -44,6 +51,7 @@ struct SensingSpec {
   ChangePer change_per = ChangePer::cluster;
   Reader reader = Reader::in_step;
   std::optional<Response> response;  ///< of all sensors; otherwise each its own
+  Units units = Units::typical;      ///< in the physical response
   double ambient_c = 20.0;           ///< of surfaces and of the air, where the scene says nothing else
   /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
   int analog_rays_per_zone = 34;
@@ -153,11 +161,12 @@ using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
 
 /// How warm a person's surface is, for the physical response.
 struct WarmthSpec {
-  double skin_c = 33.5;  ///< 33.5 to 36.9
+  std::optional<double> skin_c;  ///< none: as the air's temperature has it
   /// Insulation of what covers the parts that aren't bare, clo: 0.5 light summer, 1 a suit (`assumed`; 0 to 2 tried).
   double clothing_clo = 1.0;
   /// Parts that show skin (`assumed`; the head alone tried as well).
   std::vector<std::string> bare{"head", "left_forearm", "right_forearm"};
+  double hair_share = 0.0;                ///< of the head's surface; what hair covers is cooler than skin
   std::map<std::string, double> parts_c;  ///< surface temperatures that are known, by part
 };
 

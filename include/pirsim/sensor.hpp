@@ -59,14 +59,22 @@ struct ComparatorSpec {
   int pulse_count = 1;          ///< pulses that switch the output on
   double pulse_window_s = 0.0;  ///< within which they must begin; of no meaning for one pulse
   PulseSigns pulse_signs = PulseSigns::any;
-  double hold_s = 0.0;   ///< the output stays on after the signal has come back into the window; 0: not at all
-  double blind_s = 0.0;  ///< after the output went off nothing counts
+};
+
+/// What a device makes of its comparator's output: when it says "motion", and for how long. All 0: it follows the
+/// comparator. Derivation of the four ways in which devices report: docs/formats/sensor.md.
+struct ReportSpec {
+  double hold_s = 0.0;  ///< it stays on after the last motion that counts; 0: not at all
+  double again_s =
+      0.0;  ///< motion counts again this long after it last counted; 0: always, so that the hold re-triggers
+  double blind_s = 0.0;  ///< after it went off nothing counts
 };
 
 struct DetectorSpec {
   ElementSpec element;
   AmplifierSpec amplifier;
   ComparatorSpec comparator;
+  ReportSpec report;
 };
 
 // A sensor's optics as plain data: which zones its lens throws into the room.
@@ -87,11 +95,32 @@ struct ClusterSpec {
   std::vector<ZoneSpec> zones;
 };
 
+/// What the maker says is just detected at the rated distance of a lens step's facets: an upright plate that crosses
+/// their zones. Defaults quoted from Panasonic's data sheet of the EKMC.
+struct RatedTargetSpec {
+  int lens_step = 1;
+  double width_m = 0.25;
+  double height_m = 0.7;
+  double speed_m_s = 1.0;
+  double contrast_k = 4.0;  ///< warmer than what is behind it
+  int zones = 2;            ///< that it crosses, 1 or 2
+};
+
+/// How sensitive units of one make are, relative to the least that the maker guarantees (which the rated distances are
+/// taken to tell): log-normal over units.
+struct SensitivitySpec {
+  double mean = 1.0;
+  double sd = 0.0;  ///< of the logarithm
+};
+
 struct SensorModelSpec {
   std::string id;  ///< as scenes name it, "EKMC1604111"
   std::string description;
-  double plane_m = 1.0;  ///< distance of the plane on which the zones are drawn
+  std::vector<std::string> names;  ///< of products that carry it, "Everything Presence One"
+  double plane_m = 1.0;            ///< distance of the plane on which the zones are drawn
   std::vector<ClusterSpec> clusters;
+  std::vector<RatedTargetSpec> targets;  ///< of lens steps whose target isn't the default
+  SensitivitySpec sensitivity;
   Response response = Response::analog;
   OpticsSpec optics;
   DetectorSpec detector;  ///< electronics, for the physical response

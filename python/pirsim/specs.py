@@ -22,9 +22,9 @@ __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Clock", "Cluster", "Comparator", "Counts",
     "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
     "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person",
-    "Place", "Places", "Point2", "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script",
-    "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track",
-    "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
+    "Place", "Places", "Point2", "Point3", "Positions", "Profile", "RatedTarget", "Report", "Resident", "Rise", "Scene",
+    "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensitivity", "Sensor", "SensorModel", "Sit", "Staff",
+    "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -186,10 +186,18 @@ class Comparator:
     """Time within which the pulses must begin; required for more than one pulse."""
     pulse_signs: Literal["any", "alternating"] = "any"
     """`alternating`: a pulse counts only on the opposite side to the last."""
+
+
+@dataclass(slots=True)
+class Report:
+    """When a device says that there is motion, and for how long."""
+
     hold_s: float = 0.0
-    """How long the output stays on after the signal has returned between the thresholds."""
+    """How long it goes on after the last motion that counts."""
+    again_s: float = 0.0
+    """How long after motion that counted other motion doesn't; 0: the hold re-triggers."""
     blind_s: float = 0.0
-    """How long pulses are ignored after the output has switched off."""
+    """How long motion is ignored after it has ended."""
 
 
 @dataclass(slots=True)
@@ -199,6 +207,7 @@ class Detector:
     element: Element = field(default_factory=Element)
     amplifier: Amplifier = field(default_factory=Amplifier)
     comparator: Comparator = field(default_factory=Comparator)
+    report: Report = field(default_factory=Report)
 
 
 @dataclass(slots=True)
@@ -225,6 +234,34 @@ class Cluster:
 
 
 @dataclass(slots=True)
+class RatedTarget:
+    """The plate that facets of one lens step just detect at their rated distance."""
+
+    lens_step: int = 1
+    """Of which facets."""
+    width_m: float = 0.25
+    """Of the plate."""
+    height_m: float = 0.7
+    """Of the plate."""
+    speed_m_s: float = 1.0
+    """Sideways."""
+    contrast_k: float = 4.0
+    """By how much it is warmer than what is behind it."""
+    zones: int = 2
+    """That it crosses."""
+
+
+@dataclass(slots=True)
+class Sensitivity:
+    """How sensitive units of this make are, relative to what the rated distances tell; log-normal."""
+
+    mean: float = 1.0
+    """Over units."""
+    sd: float = 0.0
+    """Standard deviation of the logarithm over units."""
+
+
+@dataclass(slots=True)
 class SensorModel:
     """A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones."""
 
@@ -232,9 +269,15 @@ class SensorModel:
     """As scenes name it."""
     description: str = ""
     """Free text."""
+    names: list[str] = field(default_factory=list)
+    """Of products that carry it."""
     plane_m: float = 1.0
     """Distance of the plane on which the zones are drawn."""
     clusters: list[Cluster] = field(default_factory=list)
+    targets: list[RatedTarget] = field(default_factory=list)
+    """Of lens steps whose rated target isn't the usual one."""
+    sensitivity: Sensitivity = field(default_factory=Sensitivity)
+    """Of units, relative to what is guaranteed."""
     response: Literal["zones", "analog"] = "analog"
     """`zones`: a change of activity is motion; `analog`: the physical response."""
     optics: Optics = field(default_factory=Optics)
@@ -421,11 +464,14 @@ class SeatScatter:
 class Warmth:
     """How warm a person's surface is, for the physical response."""
 
-    skin_c: float = 33.5
+    skin_c: float | None = None
+    """None: as the air's temperature has it."""
     clothing_clo: float = 1.0
     """Insulation of what covers the parts that aren't bare."""
     bare: list[str] = field(default_factory=lambda: ["head", "left_forearm", "right_forearm"])
     """Parts that show skin."""
+    hair_share: float = 0.0
+    """Of the head's surface that hair covers."""
     parts_c: dict[str, float] = field(default_factory=dict)
     """Surface temperatures that are known, by part."""
 
@@ -725,6 +771,8 @@ class Sensing:
     """When in a window each sensor is asked."""
     response: Literal["zones", "analog"] | None = None
     """Of all sensors; none: each its own."""
+    units: Literal["typical", "guaranteed", "drawn"] = "typical"
+    """How sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or each `drawn`."""
     ambient_c: float = 20.0
     """Of surfaces and of the air, where the scene says nothing else."""
     analog_rays_per_zone: int = 34

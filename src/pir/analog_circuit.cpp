@@ -22,7 +22,7 @@ using Row = std::array<double, width>;
 using Square = std::array<Row, width>;
 
 std::vector<Section> sections_of(const DetectorSpec& spec) {
-  const auto& [element, amplifier, comparator] = spec;
+  const auto& [element, amplifier, comparator, report] = spec;
   if (!(element.thermal_s > 0.0 && element.electrical_s > 0.0 && amplifier.low_hz > 0.0 && amplifier.high_hz > 0.0 &&
         amplifier.order >= 1 && amplifier.order <= 3)) {
     throw Error(ErrorCode::usage, "detector: expected positive time constants and corners, and order 1 to 3");
@@ -204,14 +204,14 @@ void age(std::int32_t& ticks) noexcept {
 
 }  // namespace
 
-Comparator::Comparator(const ComparatorSpec& spec, double tick_s) : spec_(spec) {
-  if (!(spec.positive_v > 0.0 && spec.negative_v > 0.0 && spec.hold_s >= 0.0 && spec.blind_s >= 0.0 &&
+Comparator::Comparator(const ComparatorSpec& spec, const ReportSpec& report, double tick_s) : spec_(spec) {
+  if (!(spec.positive_v > 0.0 && spec.negative_v > 0.0 && report.hold_s >= 0.0 && report.blind_s >= 0.0 &&
         spec.pulse_window_s >= 0.0 && spec.pulse_count >= 1 && spec.pulse_count <= most_pulses)) {
     throw Error(ErrorCode::usage, "comparator: expected positive thresholds, times of at least 0 and 1 to 8 pulses");
   }
   pulse_window_ = ticks(spec.pulse_window_s, tick_s);
-  hold_ = ticks(spec.hold_s, tick_s);
-  blind_ = ticks(spec.blind_s, tick_s);
+  hold_ = ticks(report.hold_s, tick_s);
+  blind_ = ticks(report.blind_s, tick_s);
 }
 
 void Comparator::count_pulse(State& state) const noexcept {
@@ -248,7 +248,7 @@ void Comparator::advance_to(State& state, std::int8_t side) const noexcept {
 
 AnalogCircuit::AnalogCircuit(const DetectorSpec& spec, double volts_per_watt, double tick_s)
     : filter_(spec, volts_per_watt, tick_s),
-      comparator_(spec.comparator, tick_s),
+      comparator_(spec.comparator, spec.report, tick_s),
       lowest_v_(spec.amplifier.lowest_v - spec.amplifier.offset_v),
       highest_v_(spec.amplifier.highest_v - spec.amplifier.offset_v) {}
 

@@ -73,7 +73,7 @@ class Comparator {
   };
 
   /// Throws Error(usage) for thresholds that aren't positive, negative times or a count outside 1 to most_pulses.
-  Comparator(const ComparatorSpec& spec, double tick_s);
+  Comparator(const ComparatorSpec& spec, const ReportSpec& report, double tick_s);
 
   /// One tick on. volts: above the offset.
   void advance(State& state, double volts) const noexcept;

@@ -10,6 +10,6 @@ namespace pirsim::pir {
 
 /// Behind zones, the signal is outside the window at the ticks at which a zone changes; which side it would be on isn't
 /// known, so that pulses of any sign count. None if the output is on at just those ticks.
-[[nodiscard]] std::optional<Comparator> zone_output(const ComparatorSpec& spec, double tick_s);
+[[nodiscard]] std::optional<Comparator> zone_output(const DetectorSpec& spec, double tick_s);
 
 }  // namespace pirsim::pir

@@ -34,7 +34,7 @@ void check_together(const ComparatorSpec& comparator, const TellFault& tell) {
 }
 
 void check_together(const DetectorSpec& detector, const TellFault& tell) {
-  const auto& [element, amplifier, comparator] = detector;
+  const auto& [element, amplifier, comparator, report] = detector;
   const double up = amplifier.highest_v - amplifier.offset_v, down = amplifier.offset_v - amplifier.lowest_v;
   const bool levels_make_sense = up > 0.0 && down > 0.0;
   if (levels_make_sense && (comparator.positive_v >= up || comparator.negative_v >= down)) {

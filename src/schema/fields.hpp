@@ -23,11 +23,12 @@ namespace pirsim {
 /// Specs that Python has classes of, each before those that it is a part of.
 using SpecsOfPython =
     std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, OpticsSpec, ElementSpec,
-               AmplifierSpec, ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec,
-               action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
-               action::Leave, action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec,
-               PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec,
-               HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec,
-               OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+               AmplifierSpec, ComparatorSpec, ReportSpec, DetectorSpec, ZoneSpec, ClusterSpec, RatedTargetSpec,
+               SensitivitySpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait, action::Appear, action::Enter,
+               action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn, action::Follow,
+               action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
+               HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec,
+               CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec,
+               SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

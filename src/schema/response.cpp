@@ -43,7 +43,7 @@ std::string analog_keys(const SensorModelSpec& model) {
   add(model.optics);
   add(model.detector.element);
   add(model.detector.amplifier);
-  add(model.detector.comparator, {"pulse_count", "pulse_window_s", "hold_s", "blind_s"});
+  add(model.detector.comparator, {"pulse_count", "pulse_window_s"});
   return keys;
 }
 

@@ -74,6 +74,11 @@ struct Words<ChangePer> {
   static constexpr WordList<ChangePer, 2> all{{{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}}};
 };
 template <>
+struct Words<Units> {
+  static constexpr WordList<Units, 3> all{
+      {{"typical", Units::typical}, {"guaranteed", Units::guaranteed}, {"drawn", Units::drawn}}};
+};
+template <>
 struct Words<Reader> {
   static constexpr WordList<Reader, 2> all{{{"in_step", Reader::in_step}, {"free_running", Reader::free_running}}};
 };

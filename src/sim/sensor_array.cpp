@@ -124,9 +124,9 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
     polarity_.emplace(scene, *sensing.dual_polarity, n_levels_, 1.0 / sensing.tick_rate_hz);
   }
   for (const SensorSpec& sensor : scene.sensors) {
-    const ComparatorSpec& comparator = scene.sensor_models.at(sensor.model).detector.comparator;
+    const DetectorSpec& detector = scene.sensor_models.at(sensor.model).detector;
     const bool by_zones = response_of(scene, sensing, sensor) == Response::zones;
-    zone_outputs_.push_back(by_zones ? pir::zone_output(comparator, tick_s_) : std::nullopt);
+    zone_outputs_.push_back(by_zones ? pir::zone_output(detector, tick_s_) : std::nullopt);
   }
   if (!AnalogModel::is_needed(scene, sensing)) return;
   analog_.emplace(scene, sensing, *room_, like != nullptr ? like->analog() : nullptr);

@@ -68,7 +68,7 @@ def test_a_trace_serves_other_electronics(study, response):
     for sensor in altered.sensor_models.values():
         sensor.detector.amplifier.low_hz = 0.7
         sensor.detector.comparator.positive_v = 0.25
-        sensor.detector.comparator.hold_s = 2.0
+        sensor.detector.report.hold_s = 2.0
     other = pirsim.compile(altered, plain.script)
     emitted = trace.emit(model=other)
     assert same(emitted, pirsim.run(other))

@@ -223,7 +223,7 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   }
 }
 
-/// Its element, amplifier and comparator; what isn't there keeps its default.
+/// Its element, amplifier, comparator and reports; what isn't there keeps its default.
 DetectorSpec read_detector(YamlMap& sensor) {
   DetectorSpec detector;
   read_part(sensor, "element", detector.element);
@@ -231,6 +231,7 @@ DetectorSpec read_detector(YamlMap& sensor) {
             [&](YamlMap& map) { check_together(detector.amplifier, faults_of(map, "amplifier")); });
   read_part(sensor, "comparator", detector.comparator,
             [&](YamlMap& map) { check_together(detector.comparator, faults_of(map, "comparator")); });
+  read_part(sensor, "report", detector.report);
   // A signal that saturates before a threshold would never be noticed.
   check_together(detector, faults_of(sensor, "comparator"));
   return detector;
@@ -314,6 +315,7 @@ std::vector<std::string> sourced_detector_keys() {
   add_keys<ElementSpec>(keys);
   add_keys<AmplifierSpec>(keys);
   add_keys<ComparatorSpec>(keys);
+  add_keys<ReportSpec>(keys);
   return keys;
 }
 

@@ -56,17 +56,25 @@ struct Fields<ComparatorSpec> {
       FIELD(pulse_count, IntegerRange{.min = 1, .max = 8}, "number of pulses that switches the output on, 1 to 8"),
       FIELD(pulse_window_s, accepted::held_s,
             "time within which the pulses must begin; required for more than one pulse"),
-      FIELD(pulse_signs, "`alternating`: a pulse counts only on the opposite side to the last"),
-      FIELD(hold_s, accepted::held_s,
-            "how long the output stays on after the signal has returned between the thresholds"),
-      FIELD(blind_s, accepted::held_s, "how long pulses are ignored after the output has switched off")};
+      FIELD(pulse_signs, "`alternating`: a pulse counts only on the opposite side to the last")};
+};
+template <>
+struct Fields<ReportSpec> {
+  using S = ReportSpec;
+  static constexpr const char* name = "Report";
+  static constexpr const char* about = "When a device says that there is motion, and for how long.";
+  static constexpr std::tuple all{
+      FIELD(hold_s, accepted::held_s, "how long it goes on after the last motion that counts"),
+      FIELD(again_s, accepted::held_s,
+            "how long after motion that counted other motion doesn't; 0: the hold re-triggers"),
+      FIELD(blind_s, accepted::held_s, "how long motion is ignored after it has ended")};
 };
 template <>
 struct Fields<DetectorSpec> {
   using S = DetectorSpec;
   static constexpr const char* name = "Detector";
   static constexpr const char* about = "A sensor's electronics, for the physical response.";
-  static constexpr std::tuple all{FIELD(element), FIELD(amplifier), FIELD(comparator)};
+  static constexpr std::tuple all{FIELD(element), FIELD(amplifier), FIELD(comparator), FIELD(report)};
 };
 template <>
 struct Fields<ZoneSpec> {
@@ -88,15 +96,40 @@ struct Fields<ClusterSpec> {
       FIELD(lens_step, IntegerRange{.min = 1, .max = 99}, "row of the lens: 1 reaches farthest"), FIELD(zones)};
 };
 template <>
+struct Fields<RatedTargetSpec> {
+  using S = RatedTargetSpec;
+  static constexpr const char* name = "RatedTarget";
+  static constexpr const char* about = "The plate that facets of one lens step just detect at their rated distance.";
+  static constexpr std::tuple all{
+      FIELD(lens_step, IntegerRange{.min = 1, .max = 99}, "of which facets"),
+      FIELD(width_m, NumberRange{.above = 0.0, .max = 10.0}, "of the plate"),
+      FIELD(height_m, NumberRange{.above = 0.0, .max = 10.0}, "of the plate"),
+      FIELD(speed_m_s, NumberRange{.above = 0.0, .max = 20.0}, "sideways"),
+      FIELD(contrast_k, NumberRange{.above = 0.0, .max = 40.0}, "by how much it is warmer than what is behind it"),
+      FIELD(zones, IntegerRange{.min = 1, .max = 2}, "that it crosses")};
+};
+template <>
+struct Fields<SensitivitySpec> {
+  using S = SensitivitySpec;
+  static constexpr const char* name = "Sensitivity";
+  static constexpr const char* about =
+      "How sensitive units of this make are, relative to what the rated distances tell; log-normal.";
+  static constexpr std::tuple all{
+      FIELD(mean, NumberRange{.above = 0.0, .max = 100.0}, "over units"),
+      FIELD(sd, NumberRange{.min = 0.0, .max = 2.0}, "standard deviation of the logarithm over units")};
+};
+template <>
 struct Fields<SensorModelSpec> {
   using S = SensorModelSpec;
   static constexpr const char* name = "SensorModel";
   static constexpr const char* about = "A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones.";
   static constexpr std::tuple all{
-      FIELD(id, "as scenes name it"), LABEL(description, "free text"),
+      FIELD(id, "as scenes name it"), LABEL(description, "free text"), LABEL(names, "of products that carry it"),
       // less leaves no digits to directions
       FIELD(plane_m, NumberRange{.min = 1e-3, .max = 1000.0}, "distance of the plane on which the zones are drawn"),
-      FIELD(clusters), FIELD(response, "`zones`: a change of activity is motion; `analog`: the physical response"),
+      FIELD(clusters), FIELD(targets, "of lens steps whose rated target isn't the usual one"),
+      FIELD(sensitivity, "of units, relative to what is guaranteed"),
+      FIELD(response, "`zones`: a change of activity is motion; `analog`: the physical response"),
       FIELD(optics, "for the physical response"), FIELD(detector, "electronics, for the physical response")};
 };
 

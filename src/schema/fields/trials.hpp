@@ -33,6 +33,9 @@ struct Fields<SensingSpec> {
       FIELD(change_per, "whose change of activity is motion"),
       FIELD(reader, "when in a window each sensor is asked"),
       FIELD(response, "of all sensors; none: each its own"),
+      FIELD(units,
+            "how sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or "
+            "each `drawn`"),
       FIELD(ambient_c, accepted::skin_c, "of surfaces and of the air, where the scene says nothing else"),
       FIELD(analog_rays_per_zone, IntegerRange{.min = 1, .max = 10000}, "in the physical response")};
 };

@@ -126,8 +126,8 @@ void draw_electronics(DetectorSpec& detector, Stream& stream) {
   detector.comparator.negative_v = drawn(stream, 0.2, 0.6);
   detector.comparator.pulse_count = 1 + static_cast<int>(stream.index(2));
   detector.comparator.pulse_window_s = 2.0;
-  detector.comparator.hold_s = stream.index(2) == 0 ? 0.0 : 1.5;
-  detector.comparator.blind_s = stream.index(2) == 0 ? 0.0 : 0.5;
+  detector.report.hold_s = stream.index(2) == 0 ? 0.0 : 1.5;
+  detector.report.blind_s = stream.index(2) == 0 ? 0.0 : 0.5;
 }
 
 /// The open office with electronics that nobody has, and two makes of sensors where some answer by zones.

@@ -60,8 +60,8 @@ const std::map<std::string, Change>& changes() {
       {"pulse_count", [](SensorModelSpec& m) { m.detector.comparator.pulse_count = 3; }},
       {"pulse_window_s", [](SensorModelSpec& m) { m.detector.comparator.pulse_window_s = 4.0; }},
       {"pulse_signs", [](SensorModelSpec& m) { m.detector.comparator.pulse_signs = PulseSigns::alternating; }},
-      {"hold_s", [](SensorModelSpec& m) { m.detector.comparator.hold_s = 2.3; }},
-      {"blind_s", [](SensorModelSpec& m) { m.detector.comparator.blind_s = 5.0; }}};
+      {"hold_s", [](SensorModelSpec& m) { m.detector.report.hold_s = 2.3; }},
+      {"blind_s", [](SensorModelSpec& m) { m.detector.report.blind_s = 5.0; }}};
   return all;
 }
 
@@ -132,8 +132,8 @@ TEST_CASE("behind zones an output holds, is blind and counts as the comparator d
   };
   const auto plain = one_sensor([](SensorModelSpec&) {});
   constexpr std::size_t hold = 3;
-  const auto held = one_sensor([](SensorModelSpec& m) { m.detector.comparator.hold_s = double(hold); });
-  const auto blind = one_sensor([](SensorModelSpec& m) { m.detector.comparator.blind_s = 3600.0; });
+  const auto held = one_sensor([](SensorModelSpec& m) { m.detector.report.hold_s = double(hold); });
+  const auto blind = one_sensor([](SensorModelSpec& m) { m.detector.report.blind_s = 3600.0; });
   for (std::size_t s = 0; s < plain.front().bits.size(); ++s) {
     std::size_t n_blind_runs = 0;
     for (std::size_t row = 0; row < plain.size(); ++row) {

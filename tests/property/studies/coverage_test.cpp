@@ -323,7 +323,7 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
   silent.amplifier.noise_v_pp = 0.0;
   std::vector<pir::AnalogFilter::Sections> sections;
   std::vector<pir::Comparator::State> states(n_sensors);
-  const pir::Comparator comparator(silent.comparator, tick_s);
+  const pir::Comparator comparator(silent.comparator, silent.report, tick_s);
   std::vector<double> before = watts_at(0);
   for (std::size_t s = 0; s < before.size(); ++s) {
     sections.push_back(study.survey().array().analog()->sensors()[s]->silent_filter.at_rest(before[s]));

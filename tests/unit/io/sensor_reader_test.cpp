@@ -223,20 +223,21 @@ TEST_CASE("a file's element, amplifier and comparator are read and what it leave
   const std::string zones =
       "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n";
   const std::string sources = "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c'";
-  const auto model = model_of(zones +
-                              "element: {thermal_s: 0.5}\namplifier: {order: 3, volts_per_watt: 2e6}\n"
-                              "comparator: {pulse_count: 2, pulse_window_s: 3, pulse_signs: alternating, hold_s: 7}\n" +
-                              sources +
-                              ", thermal_s: 'assumed: d', order: 'assumed: e', volts_per_watt: 'measured: f', "
-                              "pulse_count: 'quoted: g', pulse_window_s: 'quoted: h', pulse_signs: 'quoted: i', "
-                              "hold_s: 'quoted: j'}\n");
+  const auto model =
+      model_of(zones +
+               "element: {thermal_s: 0.5}\namplifier: {order: 3, volts_per_watt: 2e6}\n"
+               "comparator: {pulse_count: 2, pulse_window_s: 3, pulse_signs: alternating}\nreport: {hold_s: 7}\n" +
+               sources +
+               ", thermal_s: 'assumed: d', order: 'assumed: e', volts_per_watt: 'measured: f', "
+               "pulse_count: 'quoted: g', pulse_window_s: 'quoted: h', pulse_signs: 'quoted: i', "
+               "hold_s: 'quoted: j'}\n");
   CHECK(model.detector.element.thermal_s == 0.5);
   CHECK(model.detector.element.electrical_s == ElementSpec{}.electrical_s);
   CHECK(model.detector.amplifier.order == 3);
   CHECK(model.detector.amplifier.volts_per_watt == 2e6);
   CHECK(model.detector.comparator.pulse_signs == PulseSigns::alternating);
-  CHECK(model.detector.comparator.hold_s == 7.0);
-  CHECK(model.detector.comparator.blind_s == 0.0);
+  CHECK(model.detector.report.hold_s == 7.0);
+  CHECK(model.detector.report.blind_s == 0.0);
   CHECK(refusal_of(zones + "element: {thermal_s: 0.5}\n" + sources + "}\n") ==
         "f:7:11: error: 'thermal_s' has no entry under 'sources'");
 }
@@ -254,7 +255,7 @@ TEST_CASE("detectors that could never work are refused with their place", "[sens
         "f:8:27: error: comparator: several pulses need a pulse_window_s");
   CHECK(refusal_of(zones + "comparator: {positive_v: 0.8}\n") ==
         "f:8:13: error: comparator: the output saturates before it reaches a threshold");
-  CHECK(refusal_of(zones + "comparator: {hold: 2}\n").find("hold_s") != std::string::npos);
+  CHECK(refusal_of(zones + "report: {hold: 2}\n").find("hold_s") != std::string::npos);
 }
 
 TEST_CASE("a lens too small for directions is refused", "[sensor]") {

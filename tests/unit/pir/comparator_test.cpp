@@ -10,8 +10,8 @@ using namespace pirsim;
 namespace {
 
 /// One letter a tick: the signal is above (+), below (-) or inside (.); on (#) or off (.).
-std::string output(const ComparatorSpec& spec, const std::string& signal) {
-  const pir::Comparator comparator(spec, 0.1);
+std::string output(const ComparatorSpec& spec, const std::string& signal, const ReportSpec& report = {}) {
+  const pir::Comparator comparator(spec, report, 0.1);
   pir::Comparator::State state;
   std::string on;
   for (const char letter : signal) {
@@ -29,7 +29,7 @@ TEST_CASE("without hold the output is on just while the signal is outside the wi
 }
 
 TEST_CASE("the thresholds are two and the signal on one of them is inside") {
-  const pir::Comparator comparator({.positive_v = 0.2, .negative_v = 0.4}, 0.02);
+  const pir::Comparator comparator({.positive_v = 0.2, .negative_v = 0.4}, {}, 0.02);
   const auto on_at = [&](double volts) {
     pir::Comparator::State state;
     comparator.advance(state, volts);
@@ -42,17 +42,17 @@ TEST_CASE("the thresholds are two and the signal on one of them is inside") {
 }
 
 TEST_CASE("hold goes on after the signal has come back and begins anew with each tick outside") {
-  REQUIRE(output({.hold_s = 0.3}, ".+......+..-.......") ==  //
+  REQUIRE(output({}, ".+......+..-.......", {.hold_s = 0.3}) ==  //
           ".####...#######....");
 }
 
 TEST_CASE("while blind no pulse counts and one that goes on afterwards does not either") {
-  REQUIRE(output({.blind_s = 0.4}, "+.+...+.++++++.+..") ==  //
+  REQUIRE(output({}, "+.+...+.++++++.+..", {.blind_s = 0.4}) ==  //
           "#.....#........#..");
 }
 
 TEST_CASE("hold and then blind time follow each other") {
-  REQUIRE(output({.hold_s = 0.2, .blind_s = 0.3}, "+....+..+...") ==  //
+  REQUIRE(output({}, "+....+..+...", {.hold_s = 0.2, .blind_s = 0.3}) ==  //
           "###.....###.");
 }
 
@@ -85,8 +85,8 @@ TEST_CASE("alternating pulses of which the first is forgotten begin anew") {
 }
 
 TEST_CASE("comparators that make no sense are refused") {
-  REQUIRE_THROWS_AS(pir::Comparator({.positive_v = 0.0}, 0.02), Error);
-  REQUIRE_THROWS_AS(pir::Comparator({.pulse_count = 0}, 0.02), Error);
-  REQUIRE_THROWS_AS(pir::Comparator({.pulse_count = 9}, 0.02), Error);
-  REQUIRE_THROWS_AS(pir::Comparator({.blind_s = -1.0}, 0.02), Error);
+  REQUIRE_THROWS_AS(pir::Comparator({.positive_v = 0.0}, {}, 0.02), Error);
+  REQUIRE_THROWS_AS(pir::Comparator({.pulse_count = 0}, {}, 0.02), Error);
+  REQUIRE_THROWS_AS(pir::Comparator({.pulse_count = 9}, {}, 0.02), Error);
+  REQUIRE_THROWS_AS(pir::Comparator({}, {.blind_s = -1.0}, 0.02), Error);
 }
