@@ -49,7 +49,7 @@ const std::vector<std::vector<int>> two_days{stretches({{0, 60}, {1, 90}, {3, 60
 }  // namespace
 
 TEST_CASE("A unit has one number of people, and no row within a minute of a change", "[units]") {
-  const Units units = units_of(script_with(two_days));
+  const reconcile::Units units = units_of(script_with(two_days));
   REQUIRE(units.n_days == 2);
   REQUIRE(units.n_rows == 480);
   const CountsSpec given = *script_with(two_days).trials.front().occupancy->counts;
@@ -67,7 +67,7 @@ TEST_CASE("A unit has one number of people, and no row within a minute of a chan
         said.insert({given.people[k - 1], given.people[k]});
       }
       const std::int32_t people = units.people[day * units.n_rows + row];
-      if (people == Units::not_sure) {
+      if (people == reconcile::Units::not_sure) {
         CHECK(said.size() > 1);
         continue;
       }
@@ -79,9 +79,9 @@ TEST_CASE("A unit has one number of people, and no row within a minute of a chan
   }
   CHECK(sure > 900);
   for (const auto& [unit, people] : people_of) {
-    if (unit != Units::none) CHECK(people.size() == 1);
+    if (unit != reconcile::Units::none) CHECK(people.size() == 1);
   }
-  CHECK(std::ranges::count(units.of_row, Units::none) < 40);
+  CHECK(std::ranges::count(units.of_row, reconcile::Units::none) < 40);
   CHECK(
       std::ranges::any_of(units.names, [](const std::string& name) { return name.starts_with("comings and goings"); }));
   CHECK(units.names.front() == "nobody from 03-02 08:00 to 03-03 10:31");
@@ -89,7 +89,7 @@ TEST_CASE("A unit has one number of people, and no row within a minute of a chan
 
 TEST_CASE("Few people are told apart by their number, many by twice as many each time", "[units]") {
   const auto names = [](int most) {
-    const Units units = units_of(script_with({stretches({{most, 60}, {most - 1, 61}})}));
+    const reconcile::Units units = units_of(script_with({stretches({{most, 60}, {most - 1, 61}})}));
     std::set<std::string> people;
     for (const std::string& name : units.names) people.insert(name.substr(0, name.find(" from")));
     return people;
@@ -144,10 +144,10 @@ TEST_CASE("Runs in units keep every row once, apart where they don't follow each
     ones += static_cast<std::size_t>(std::ranges::count(unit.bits, 1));
   }
   for (std::size_t i = 0; i < frame.units.of_row.size(); ++i) {
-    if (frame.units.of_row[i] == Units::none) continue;
+    if (frame.units.of_row[i] == reconcile::Units::none) continue;
     for (std::size_t sensor = 0; sensor < 2; ++sensor) wanted += days[i / 480].bits[i % 480 * 2 + sensor];
   }
-  const auto none = static_cast<std::size_t>(std::ranges::count(frame.units.of_row, Units::none));
+  const auto none = static_cast<std::size_t>(std::ranges::count(frame.units.of_row, reconcile::Units::none));
   CHECK(kept == 2 * (960 - none));
   CHECK(ones == wanted);
   // "1 person" of the morning and of the end of the first day: one unknown row lies between.

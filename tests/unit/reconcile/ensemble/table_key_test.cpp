@@ -12,11 +12,12 @@ using namespace pirsim::reconcile;
 namespace pirsim {
 
 template <>
-struct Fields<Units> {
-  static constexpr std::tuple all{field("trial", &Units::trial),      field("n_days", &Units::n_days),
-                                  field("n_rows", &Units::n_rows),    field("of_row", &Units::of_row),
-                                  field("people", &Units::people),    field("names", &Units::names),
-                                  field("begins_s", &Units::begins_s)};
+struct Fields<reconcile::Units> {
+  static constexpr std::tuple all{
+      field("trial", &reconcile::Units::trial),      field("n_days", &reconcile::Units::n_days),
+      field("n_rows", &reconcile::Units::n_rows),    field("of_row", &reconcile::Units::of_row),
+      field("people", &reconcile::Units::people),    field("names", &reconcile::Units::names),
+      field("begins_s", &reconcile::Units::begins_s)};
 };
 template <>
 struct Fields<StudyFrame> {
