@@ -55,7 +55,7 @@ double sum_of_squares(const Powers& powers) {
 
 /// Of bare skin before a background.
 double contrast(double background_c) {
-  return pir::band_radiance(pir::kelvin(WarmthSpec{}.skin_c)) - pir::band_radiance(pir::kelvin(background_c));
+  return pir::band_radiance(pir::kelvin(WarmthSpec{}.skin_c.value_or(33.5))) - pir::band_radiance(pir::kelvin(background_c));
 }
 
 /// Every power is `ratio` times what it was, but for a step of rounding a ray.
