@@ -13,9 +13,7 @@ namespace pirsim::body {
 
 namespace {
 
-// Paper, section 2.2: ellipse 0.5 m long and 0.3 m high.
-constexpr double longest_step_m = 0.5;
-constexpr double walking_lift_m = 0.15;
+constexpr double walking_lift_m = 0.15;                // paper, section 2.2: ellipse 0.5 m long and 0.3 m high
 constexpr double walking_pitch_per_lift = 2.6;         // assumed (1-2.9 rad/m): 13 degrees at mid-swing
 constexpr double walking_acceleration_m_s2 = 1.5;      // assumed (1-2)
 constexpr double turning_step = radians(22.5);         // of the pelvis; each foot turns by up to twice that
@@ -26,7 +24,6 @@ constexpr double standstill_m_s = 0.05;                // assumed: slower than t
 constexpr double turn_before_walking = radians(20);    // assumed: less is blended into the first step
 constexpr double furthest_from_route_m = 0.1;          // assumed: more than that is another place
 
-constexpr double fall_s = 1.2;                  // assumed (0.8-2)
 constexpr double sliding_speed_m_s = 0.4;       // assumed (0.2-0.6), highest
 constexpr double shortest_slide_s = 0.6;        // assumed
 constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands between thighs and table
@@ -47,10 +44,20 @@ bool rests_at(const MinJerk& motion, double target) { return motion.settled() &&
 
 }  // namespace
 
+Manner natural_manner(double pace_m_s, double stature_m) noexcept {
+  constexpr double mean_stature_m = 1.75;
+  return {.pace_m_s = pace_m_s,
+          .step_m = 0.63 * std::pow(pace_m_s, 0.42) * std::pow(stature_m / mean_stature_m, 0.79),
+          .sitting_down_s = 1.5,
+          .rising_s = 1.8};
+}
+
 std::string_view name(Stage stage) noexcept { return phases_of_body[static_cast<std::size_t>(stage)]; }
 
 Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s)
-    : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s), pace_m_s_(humanoid.walking_speed_m_s()) {
+    : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s) {
+  manner_.pace_m_s = humanoid.walking_speed_m_s();
+  manner_.step_m *= humanoid.measures().stature_m / reference_stature_m;
   const Placement place{position, heading};
   const double half_stance = 0.5 * humanoid.measures().hip_width_m;
   come_to_stand(place, {Footstep{place.shifted(0.0, -half_stance)}, Footstep{place.shifted(0.0, half_stance)}});
@@ -119,7 +126,7 @@ void Motion::walk_from(const Route& route, double from_s) {
 
 StepStyle Motion::walking_style() const noexcept {
   const double scale = humanoid_.measures().stature_m / reference_stature_m;
-  return {.step = longest_step_m * scale,
+  return {.step = manner_.step_m,
           .lift_m = walking_lift_m * scale,
           .pitch_per_lift = walking_pitch_per_lift / scale};
 }
@@ -255,7 +262,7 @@ void Motion::update_stance() noexcept {
 void Motion::advance_on_track() {
   const bool walking = stage_ == Stage::walking;
   const double acceleration = walking ? walking_acceleration_m_s2 : turning_acceleration;
-  const double wanted = walking ? std::min(pace_m_s_, speed_limit_m_s_) : turning_speed;
+  const double wanted = walking ? std::min(manner_.pace_m_s, speed_limit_m_s_) : turning_speed;
   const double change = acceleration * tick_s_;
   // The highest speed from which, after this tick, one can still brake on the way that remains.
   const double remaining = steps_.length() - distance_;
@@ -285,12 +292,12 @@ void Motion::advance_on_seat() noexcept {
   };
   const double seat_slide = seating_.slide_length_m();
   if (stage_ == Stage::sitting_down) {
-    fall_.move_to(1.0, ticks(fall_s));
+    fall_.move_to(1.0, ticks(manner_.sitting_down_s));
     if (rests_at(fall_, 1.0)) slide_to(seat_slide);
     if (rests_at(fall_, 1.0) && rests_at(slide_m_, seat_slide)) turn_to_table();
   } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0) && channels_rest()) {
     slide_to(0.0);
-    if (rests_at(slide_m_, 0.0)) fall_.move_to(0.0, ticks(fall_s));
+    if (rests_at(slide_m_, 0.0)) fall_.move_to(0.0, ticks(manner_.rising_s));
     if (rests_at(fall_, 0.0)) come_to_stand(stand_, stand_feet_);
   }
 }

@@ -69,6 +69,21 @@ struct Outline {
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
 
+/// How somebody walks, sits down and rises. Defaults: the paper's steps (of a stature of 1.86 m), times `assumed`
+/// (0.8-2 s).
+struct Manner {
+  double pace_m_s = 1.0;
+  double step_m = 0.5;  ///< longest way of the body during one step
+  double sitting_down_s = 1.2, rising_s = 1.2;
+  bool operator==(const Manner&) const = default;
+};
+/// Of people who move by themselves. A step is 0.63 m V^0.42 long at a stature of 1.75 m: the exponent is quoted,
+/// Ref: [Grieve1966]; 0.63 `assumed` (0.6-0.66), which makes a walk ratio of 0.0064 m per step a minute at 1.3 m/s, in
+/// the middle of what is measured, Ref: [Murakami2017]. It grows with the stature to the power 0.79, so that people of
+/// all sizes walk alike by their Froude number, Ref: [Alexander1984]. Sitting down takes 1.5 s and rising 1.8 s
+/// (`assumed`, 0.9-2 and 1.5-2: measured are 0.9 and 1.5 s, doi:10.1007/s40520-020-01715-9, to 1.9 and 2.0 s).
+[[nodiscard]] Manner natural_manner(double pace_m_s, double stature_m) noexcept;
+
 /// A value: copying it copies the whole state of the person's body. Commands may be given at any time; every part
 /// stays continuous in position whatever the order of commands, and joint speeds stay bounded.
 class Motion {
@@ -105,9 +120,9 @@ class Motion {
   [[nodiscard]] double target(Channel which) const noexcept { return channel(which).target(); }
   [[nodiscard]] double breath() const noexcept { return breath_; }
   void breathe(double radians) noexcept { breath_ = radians; }  ///< tilt of the spine from now on, as it is
-  /// Walking speed from the next tick on, instead of the person's own.
-  [[nodiscard]] double pace_m_s() const noexcept { return pace_m_s_; }
-  void set_pace(double metres_per_second) noexcept { pace_m_s_ = metres_per_second; }
+  [[nodiscard]] double pace_m_s() const noexcept { return manner_.pace_m_s; }
+  /// From the next walk, sitting down or rising on, instead of the paper's manner at the person's own pace.
+  void set_manner(const Manner& manner) noexcept { manner_ = manner; }
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
   void halt() noexcept;  ///< a walker stands still at once, in mid-stride
@@ -179,7 +194,7 @@ class Motion {
   double distance_ = 0.0;
   double track_speed_ = 0.0;
   double hips_lowered_m_ = 0.0;  ///< below standing at the start of a turn, fading
-  double pace_m_s_ = 1.0;
+  Manner manner_;
   std::optional<double> followed_m_;  ///< of who follows a way: where on it with the next tick
   double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
   /// What is left to walk after the present track: of a route with sharp turns.

@@ -370,11 +370,18 @@ Progress Actor::carry_out_first(const Scene& scene) {
   return std::visit([&](auto& errand) { return carry_out(errand, scene); }, errands_.front());
 }
 
+/// If that is the person's style.
+void Actor::move_naturally() {
+  if (!natural_) return;
+  const PersonInForce& spec = person().spec;
+  body_motion().set_manner(body::natural_manner(natural_->pace(spec.walking_speed_m_s), spec.stature_m));
+}
+
 Progress Actor::carry_out(const ComeIn& come, const Scene& scene) {
   const bool taken = somebody_near(come.point, scene.others);
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, come.point, come.heading);
-  if (natural_) body_motion().set_pace(natural_->pace(person().spec.walking_speed_m_s));
+  move_naturally();
   if (taken) body_->pass_through(scene.now);
   return Progress::done;
 }
@@ -500,7 +507,7 @@ Progress Actor::carry_out(const BeThere& there, const Scene& scene) {
                      std::ranges::find(scene.others, *facts_.place, &Presence::seat) != scene.others.end();
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, there.before.stand, there.before.heading);
-  if (natural_) body_motion().set_pace(natural_->pace(person().spec.walking_speed_m_s));
+  move_naturally();
   if (taken) body_->pass_through(scene.now);
   seat_ = *facts_.place;
   const auto until = [this](Stage stage) {

@@ -57,6 +57,34 @@ TEST_CASE("in the middle of a walk the body covers 1 m/s and makes two steps a s
   CHECK(lowest > -1e-9);
 }
 
+TEST_CASE("steps and cadence of natural walkers grow with the pace as measured ones do", "[motion]") {
+  // Steps a minute; published for adults: 100 to 120 at 1.2 to 1.4 m/s (Murray, Kory & Bernard 1964 and others).
+  const auto cadence = [](double pace_m_s, double stature_m) {
+    PersonSpec person;
+    person.stature_m = stature_m;
+    const Humanoid walker(person);
+    Motion motion(walker, {0, 0}, 0.0, 0.0, tick_s);
+    motion.set_manner(natural_manner(pace_m_s, stature_m));
+    motion.walk(Route({{0, 0}, {0, -200}}));
+    int landings = 0;
+    bool in_air = false;
+    const int settling = static_cast<int>(5.0 / tick_s), minute = static_cast<int>(60.0 / tick_s);
+    for (int i = 0; i < settling + minute; ++i) {
+      motion.advance();
+      const bool lifted = motion.outline().feet[0].lift_m > 1e-6;
+      if (i >= settling && in_air && !lifted) ++landings;
+      in_air = lifted;
+    }
+    return 2.0 * landings;
+  };
+  const double slow = cadence(0.8, 1.75), usual = cadence(1.3, 1.75), fast = cadence(1.6, 1.75);
+  CHECK(usual > 105);
+  CHECK(usual < 118);
+  CHECK(std::abs(std::log(fast / slow) / std::log(2.0) - 0.58) < 0.04);  // +-1 step a minute of either
+  CHECK(cadence(1.3, 1.55) > usual);
+  CHECK(cadence(1.3, 1.95) < usual);
+}
+
 TEST_CASE("seen from a body that walks straight, a foot runs along the upper half of the paper's ellipse", "[motion]") {
   Motion motion = standing();
   motion.walk(Route({{0, 0}, {0, -20}}));

@@ -55,6 +55,21 @@ TEST_CASE("on a chair whose pelvis point is 0.531 m high the hips pass 80 degree
   }
 }
 
+TEST_CASE("people of a manner of their own take its times to sit down and to rise", "[motion]") {
+  const Manner natural = natural_manner(1.2, 1.86);
+  Motion motion = before_seat(fall_back_m(man(), desk_seat()));
+  motion.set_manner(natural);
+  motion.sit_down(desk_seat());
+  Soundness soundness;
+  const auto watch = [&](const Motion& m) { soundness.add(man(), m.posture()); };
+  // Who stands where the knees touch the seat only falls.
+  CHECK(run_until(motion, sits, watch) * tick_s == Approx(natural.sitting_down_s).margin(0.1));
+  settle(motion);
+  motion.rise();
+  CHECK(run_until(motion, stands, watch) * tick_s == Approx(natural.rising_s).margin(0.1));
+  soundness.check();
+}
+
 TEST_CASE("small errors of place and heading before a seat are gone when seated", "[motion]") {
   Motion motion = before_seat(0.45, 0.07, 0.2);
   motion.sit_down(desk_seat());
