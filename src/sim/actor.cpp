@@ -70,11 +70,12 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
 void Actor::begin(const CompiledStudy& study, const Others& others) {
   if (done() || action().at_s.value_or(0.0) > 0.0) return;
   const ActionFacts facts = facts_of(action().what);
-  if (facts.course != Course::comes || facts.entrance != nullptr) return;
+  const bool is_led = facts.follows != nullptr;
+  if ((facts.course != Course::comes && !is_led) || facts.entrance != nullptr) return;
   if (facts.appears_at != nullptr && somebody_near(*facts.appears_at, others)) return;
-  const Scene scene{study, others, 0};
-  start_action(scene);
-  if (carry_out_first(scene) == Progress::going_on) return;
+  start_action({study, others, 0});
+  // Whose path begins with the run stands at its first point before the first tick.
+  if (carry_out_first({study, others, is_led ? -1 : 0}) == Progress::going_on) return;
   errands_.pop_front();
   if (natural_) natural_->settle(body_motion(), activity_at_first());
 }
@@ -371,7 +372,7 @@ Progress Actor::carry_out_first(const Scene& scene) {
 }
 
 /// If that is the person's style.
-void Actor::move_naturally() {
+void Actor::adopt_manner() {
   if (!natural_) return;
   const PersonInForce& spec = person().spec;
   body_motion().set_manner(body::natural_manner(natural_->pace(spec.walking_speed_m_s), spec.stature_m));
@@ -381,7 +382,7 @@ Progress Actor::carry_out(const ComeIn& come, const Scene& scene) {
   const bool taken = somebody_near(come.point, scene.others);
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, come.point, come.heading);
-  move_naturally();
+  adopt_manner();
   if (taken) body_->pass_through(scene.now);
   return Progress::done;
 }
@@ -507,7 +508,7 @@ Progress Actor::carry_out(const BeThere& there, const Scene& scene) {
                      std::ranges::find(scene.others, *facts_.place, &Presence::seat) != scene.others.end();
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, there.before.stand, there.before.heading);
-  move_naturally();
+  adopt_manner();
   if (taken) body_->pass_through(scene.now);
   seat_ = *facts_.place;
   const auto until = [this](Stage stage) {

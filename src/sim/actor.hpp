@@ -155,7 +155,7 @@ class Actor {
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, const Others& others) const;
   [[nodiscard]] bool somebody_near(const Vec2& point, const Others& others) const;
   Progress carry_out_first(const Scene& scene);
-  void move_naturally();
+  void adopt_manner();
   Progress carry_out(const ComeIn& errand, const Scene& scene);
   Progress carry_out(const WaitForDoor& errand, const Scene& scene);
   Progress carry_out(const WaitForSeat& errand, const Scene& scene);

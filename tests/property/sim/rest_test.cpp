@@ -58,6 +58,16 @@ TEST_CASE("who stands still from the beginning is no motion until they walk, by 
   check_rests(model_of(script));
 }
 
+TEST_CASE("who is followed from the run's beginning on has stood there for long", "[rest]") {
+  for (const Response response : {Response::zones, Response::analog}) {
+    ScriptSpec script =
+        script_of({person("a", {act(action::Follow{{0.0, walks_at_s, walks_at_s + 3.0}, {here, here, there}, {}})})});
+    script.sensing.response = response;
+    script.sensing.change_per = ChangePer::beam;
+    check_rests(model_of(script));
+  }
+}
+
 TEST_CASE("who stands there naturally from the beginning, on the phone too, is no motion in the first row", "[rest]") {
   for (const std::optional<Activity> activity : {std::optional<Activity>(), std::optional(Activity::phone)}) {
     ScriptSpec script =
