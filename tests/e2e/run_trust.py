@@ -71,6 +71,14 @@ class Trust(unittest.TestCase):
             self.assertEqual(sum(t["silent", minutes] for t in trust.office_tallies(day)),
                              len(re.findall("q{%d,}" % (2 * minutes), text)))
 
+    def test_runs_of_motion_as_runs_of_letters(self):
+        day = trust.readings(self.log(8))
+        text = ""
+        for (before, _, _), (t, motion, people) in zip([day[0], *day], day):
+            text += ("|" if t - before > 31 else "") + (str(people) if motion else "|")
+        for people in trust.COUNTS:
+            self.assertEqual(sum(t["runs", people] for t in trust.office_tallies(day)), len(re.findall(f"{people}+", text)))
+
     def test_power_law(self):
         """2,000 values of a cut law: the exponent within four standard errors, and one that is off by 0.3 isn't."""
         draw = random.Random(5)
