@@ -30,7 +30,7 @@ class Trust(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def log(self, seed):
+    def log(self, seed, moves=0.1):
         """Ten hours of readings every 30 s: people who come and go, motion now and then, some readings missing."""
         draw, people, gap = random.Random(seed), 0, 0
         file = self.folder / "day.csv"
@@ -40,7 +40,7 @@ class Trust(unittest.TestCase):
             for i in range(1200):
                 people = draw.choice((0, 1, 2, 3)) if draw.random() < 0.03 else people
                 gap = draw.choice((1, 3, 30)) if draw.random() < 0.01 else max(0, gap - 1)
-                bits = [int(people > 0 and draw.random() < 0.1) for _ in range(2)]
+                bits = [int(people > 0 and draw.random() < moves) for _ in range(2)]
                 if not gap:
                     t = 8 * 3600 + 30 * i
                     writer.writerow(["2024-03-04", f"{t // 3600:02}:{t // 60 % 60:02}:{t % 60:02}", *bits, people])
@@ -72,12 +72,13 @@ class Trust(unittest.TestCase):
                              len(re.findall("q{%d,}" % (2 * minutes), text)))
 
     def test_runs_of_motion_as_runs_of_letters(self):
-        day = trust.readings(self.log(8))
+        day = trust.readings(self.log(8, moves=0.4))
         text = ""
         for (before, _, _), (t, motion, people) in zip([day[0], *day], day):
             text += ("|" if t - before > 31 else "") + (str(people) if motion else "|")
         for people in trust.COUNTS:
-            self.assertEqual(sum(t["runs", people] for t in trust.office_tallies(day)), len(re.findall(f"{people}+", text)))
+            self.assertEqual(sum(t["runs", people] for t in trust.office_tallies(day)),
+                             len(re.findall(f"{people}+", text)))
 
     def test_power_law(self):
         """2,000 values of a cut law: the exponent within four standard errors, and one that is off by 0.3 isn't."""
