@@ -62,6 +62,8 @@ struct RoomGroupSpec {
   ScheduleSpec schedule;
   /// How many of the schedule's staff a room has, at most one a seat; none: all of them.
   std::optional<CountRange> people;
+  /// Of the air in degrees Celsius: a room's mean. None: as the sensing of all says.
+  std::optional<Range> ambient_c{};
   Where where;
 };
 
@@ -90,7 +92,8 @@ struct RecipeSpec {
   std::uint64_t seed = 1;
   std::vector<RoomGroupSpec> rooms;
   std::optional<DrawBySpec> draw_by;
-  int days = 5;  ///< of each room, one after the other
+  int days = 5;               ///< of each room, one after the other
+  double ambient_sd_k = 0.7;  ///< of days about their room's mean. Ref: [Foldvary2018], days of a month in one building
   SensingSpec sensing;
   std::vector<VariedEffectSpec> effects;
   SplitSpec split;

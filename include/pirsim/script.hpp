@@ -52,7 +52,8 @@ struct SensingSpec {
   Reader reader = Reader::in_step;
   std::optional<Response> response;  ///< of all sensors; otherwise each its own
   Units units = Units::typical;      ///< in the physical response
-  double ambient_c = 20.0;           ///< of surfaces and of the air, where the scene says nothing else
+  /// Of surfaces and of the air, where the scene says nothing else: offices' mean. Ref: [Foldvary2018].
+  double ambient_c = 23.0;
   /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
   int analog_rays_per_zone = 34;
 };
@@ -159,14 +160,15 @@ struct ScriptedAction {
 /// Meshes by the name of the body part (schema/body_part_names.hpp) that they stand for, in that part's frame.
 using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
 
-/// How warm a person's surface is, for the physical response.
+/// How warm a person's surface is, for the physical response. Derivation: docs/physics/analog.md. Hands are bare.
 struct WarmthSpec {
   std::optional<double> skin_c;  ///< none: as the air's temperature has it
-  /// Insulation of what covers the parts that aren't bare, clo: 0.5 light summer, 1 a suit (`assumed`; 0 to 2 tried).
-  double clothing_clo = 1.0;
-  /// Parts that show skin (`assumed`; the head alone tried as well).
-  std::vector<std::string> bare{"head", "left_forearm", "right_forearm"};
-  double hair_share = 0.0;                ///< of the head's surface; what hair covers is cooler than skin
+  double skin_above_k = 0.0;     ///< by how much this person's skin is then warmer than others'
+  /// Insulation of the whole outfit, clo: 0.5 light summer clothes, 0.61 trousers and a shirt with long sleeves, 1 a
+  /// suit. Ref: [ASHRAE55].
+  double clothing_clo = 0.61;
+  std::vector<std::string> bare{"head"};  ///< parts that show skin: forearms, too, in short sleeves
+  double hair_share = 0.5;                ///< of a bare head's surface; what hair covers is cooler than skin
   std::map<std::string, double> parts_c;  ///< surface temperatures that are known, by part
 };
 

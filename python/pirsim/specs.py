@@ -466,12 +466,14 @@ class Warmth:
 
     skin_c: float | None = None
     """None: as the air's temperature has it."""
-    clothing_clo: float = 1.0
-    """Insulation of what covers the parts that aren't bare."""
-    bare: list[str] = field(default_factory=lambda: ["head", "left_forearm", "right_forearm"])
-    """Parts that show skin."""
-    hair_share: float = 0.0
-    """Of the head's surface that hair covers."""
+    skin_above_k: float = 0.0
+    """By how much it is then warmer than others'."""
+    clothing_clo: float = 0.61
+    """Insulation of the whole outfit."""
+    bare: list[str] = field(default_factory=lambda: ["head"])
+    """Parts that show skin; hands always do."""
+    hair_share: float = 0.5
+    """Of a bare head's surface that hair covers."""
     parts_c: dict[str, float] = field(default_factory=dict)
     """Surface temperatures that are known, by part."""
 
@@ -773,7 +775,7 @@ class Sensing:
     """Of all sensors; none: each its own."""
     units: Literal["typical", "guaranteed", "drawn"] = "typical"
     """How sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or each `drawn`."""
-    ambient_c: float = 20.0
+    ambient_c: float = 23.0
     """Of surfaces and of the air, where the scene says nothing else."""
     analog_rays_per_zone: int = 34
     """In the physical response."""

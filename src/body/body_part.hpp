@@ -38,9 +38,8 @@ using Posture = std::array<Frame, n_parts>;
 /// The solids of one person, indexed by Part, in their part's frame.
 using Solids = std::array<Shape, n_parts>;
 
-/// Degrees Celsius, indexed by Part. Bare parts have the skin's temperature. Clothing lies between the skin's and the
-/// room's, as its insulation (0.155 m^2 K/W a clo) does to that of the air around it (8 W/(m^2 K) by convection and
-/// radiation, `assumed`; 6 to 10). Ref: [ISO7730].
+/// Degrees Celsius, indexed by Part: of skin, of hair and clothing between skin and room, or of both where a part has
+/// both. Derivation: docs/physics/analog.md. Ref: [Mehnert2000, ISO7730].
 [[nodiscard]] std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c);
 
 }  // namespace pirsim::body

@@ -76,9 +76,11 @@ Parameters parameters_of(const fs::path& folder) {
   RoomMeans means;
   constexpr std::array of_rooms{NamedColumn{"floor_m2", "floor_m2"}, NamedColumn{"seats", "seats"},
                                 NamedColumn{"staff", "people"}};
+  constexpr std::array of_days{NamedColumn{"ambient_c", "ambient_c"}};
   constexpr std::array of_sensors{NamedColumn{"y_m", "sensors.height_m"}, NamedColumn{"tilt_deg", "sensors.tilt_deg"}};
   add_columns(folder / "rooms.csv", of_rooms, means);
   add_columns(folder / "sensors.csv", of_sensors, means);
+  add_columns(folder / "days.csv", of_days, means);
   add_effects(folder / "effects.csv", means);
   Parameters parameters;
   means.tell(parameters);

@@ -75,6 +75,15 @@ ScheduleSpec schedule_of(const RecipeSpec& recipe, const SceneSpec& scene, int r
   return schedule;
 }
 
+/// Of the room on this day; to a hundredth of a degree, so that scripts are good to read.
+double ambient_of(const RecipeSpec& recipe, int room, int day) {
+  const std::optional<Range>& range = group_of(recipe, room).ambient_c;
+  if (!range) return recipe.sensing.ambient_c;
+  Stream of_room({recipe.seed, word(recipe.original_of(room)), 0, Purpose::room_ambient});
+  Stream of_day({recipe.seed, word(room), word(day), Purpose::day_ambient});
+  return std::round(100.0 * (draw(*range, of_room) + recipe.ambient_sd_k * of_day.normal())) / 100.0;
+}
+
 // -- effects ---------------------------------------------------------------------------------------------------------
 
 double drawn(const Range& range, effects::Scale scale, Stream& stream) {
@@ -234,6 +243,7 @@ ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room,
   script.seed = seeds.next_u32();  // 32 bits: any reader of YAML or JSON holds them
   script.replicates = recipe.days;
   script.sensing = recipe.sensing;
+  script.sensing.ambient_c = ambient_of(recipe, room, day);
   TrialSpec& trial = script.trials.emplace_back();
   trial.id = "day";
   trial.schedule = schedule_of(recipe, scene, room);

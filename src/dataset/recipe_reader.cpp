@@ -151,6 +151,28 @@ bool is_home(const YamlNode& node, Diagnostics& faults) {
   return kind && kind->is_scalar() && kind->text(faults, "kind") == "home";
 }
 
+std::optional<Range> read_ambient(YamlMap& map) {
+  const Range given = read_range(map, "ambient_c", {}, accepted::skin_c);
+  return map.has("ambient_c") ? std::optional(given) : std::nullopt;
+}
+
+/// How warm rooms are whose group doesn't say it, unless the sensing does.
+void read_usual_ambient(YamlMap& map, bool sensing_tells, RecipeSpec& recipe) {
+  // Ref: [Foldvary2018], means of 121 cooled office buildings in Europe, America and Oceania: 5th to 95th percentile.
+  constexpr Range offices{21.0, 25.0};
+  constexpr Range homes{19.0, 24.0};  // Ref: [EnBuild2021], a mean of 19; [Slovenia2017], nearly all
+  const std::optional<Range> given = read_ambient(map);
+  recipe.ambient_sd_k = map.number("ambient_sd_k", recipe.ambient_sd_k, {.min = 0.0, .max = 10.0});
+  const auto twice = [&](const Where& where) {
+    map.faults().error(where, "ambient_c: sensing.ambient_c says it already: leave out one of them");
+  };
+  if (sensing_tells && given) twice(map.where("ambient_c"));
+  for (RoomGroupSpec& group : recipe.rooms) {
+    if (sensing_tells && group.ambient_c) twice(group.where);
+    if (!sensing_tells && !group.ambient_c) group.ambient_c = given ? *given : group.home ? homes : offices;
+  }
+}
+
 /// Flats, and households instead of a schedule; of the recipe's they take the first day.
 RoomGroupSpec read_homes(const YamlNode& node, const std::optional<ScheduleSpec>& schedule, Diagnostics& faults) {
   YamlMap map(node, faults, "rooms");
@@ -161,6 +183,7 @@ RoomGroupSpec read_homes(const YamlNode& node, const std::optional<ScheduleSpec>
   HomeGroupSpec& home = group.home.emplace();
   home.flats = read_flat_keys(map);
   if (const auto household = map.child("household")) home.household = read_household_ranges(*household, faults);
+  group.ambient_c = read_ambient(map);
   group.schedule.where = group.where;
   group.schedule.first_day = map.text("first_day", schedule ? schedule->first_day : group.schedule.first_day);
   group.schedule.from_h = home_from_h;
@@ -194,6 +217,7 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
     group.rooms = read_room_keys(map);
   }
   group.people = read_people(map, people);
+  group.ambient_c = read_ambient(map);
   constexpr int many = 200;  // of staff; a room takes as many as it has seats
   const auto own = io::read_schedule(map.child("schedule"), faults);
   group.schedule = own ? *own : schedule ? *schedule : usual_schedule(group.rooms.kind, many, group.where);
@@ -302,11 +326,17 @@ RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file
   recipe.name = map.text("name", io::stem_of_input(file));
   recipe.seed = map.unsigned_integer("seed", recipe.seed);
   recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});
-  recipe.sensing = io::read_sensing(map.child("sensing"), faults);
+  const auto sensing = map.child("sensing");
+  const auto sensing_tells = [&](const std::string& key) {
+    return sensing && sensing->is_map() && YamlMap(*sensing, faults, "sensing").has(key);
+  };
+  recipe.sensing = io::read_sensing(sensing, faults);
+  if (!sensing_tells("units")) recipe.sensing.units = Units::drawn;
   const auto schedule = io::read_schedule(map.child("schedule"), faults);
   const auto people = read_people(map, std::nullopt);
   for (const YamlNode& node : map.required_list("rooms"))
     recipe.rooms.push_back(read_group(node, recipe, schedule, people, faults));
+  read_usual_ambient(map, sensing_tells("ambient_c"), recipe);
   recipe.draw_by = read_draw_by(map, recipe.n_rooms());
   if (recipe.draw_by && !faults.has_errors()) recipe.originals = drawn_by_weight(*recipe.draw_by, recipe.seed);
   for (const YamlNode& node : map.list("effects")) recipe.effects.push_back(read_effect(node, faults));

@@ -190,6 +190,7 @@ RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const Colu
   ScriptSpec script = script_of(recipe, room.scene(), room.number(), day);
   const ScheduleSpec& schedule = *script.trials.front().schedule;
   record.date = clock_text(day_number(schedule.first_day, schedule.where) + day - 1, 0.0).substr(0, 10);
+  record.ambient_c = script.sensing.ambient_c;
   for (const StaffSpec& staff : schedule.staff) record.staff += staff.count;
   if (schedule.household) record.staff += static_cast<int>(schedule.household->residents.size());
   record.effects = script.effects;
@@ -248,6 +249,7 @@ std::string to_json(const RoomDayRecord& r) {
                 {"date", r.date},
                 {"rows", r.rows},
                 {"seconds", r.seconds},
+                {"ambient_c", r.ambient_c},
                 {"staff", r.staff},
                 {"most_people", r.most_people},
                 {"arrivals", r.arrivals},
@@ -274,6 +276,7 @@ RoomDayRecord record_from_json(const std::string& text, const std::string& name)
     r.date = d.at("date");
     r.rows = d.at("rows");
     r.seconds = d.at("seconds");
+    r.ambient_c = d.at("ambient_c");
     r.staff = d.at("staff");
     r.most_people = d.at("most_people");
     r.arrivals = d.at("arrivals");

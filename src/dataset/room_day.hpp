@@ -36,6 +36,7 @@ struct RoomDayRecord {
   std::string date;  ///< ISO 8601
   std::uint64_t rows = 0;
   double seconds = 0.0;  ///< that the rows cover
+  double ambient_c = 0.0;
   int staff = 0, most_people = 0;
   std::uint64_t arrivals = 0, departures = 0, passes_through = 0;
   std::map<int, MotionCount> rows_by_people, readings_by_people;

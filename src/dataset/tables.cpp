@@ -149,6 +149,8 @@ constexpr Column<RecordLine> days[]{
     {{"rows", Holds::count, "Rows of this day.", "1"}, [](const RecordLine& line) { return whole(line.record.rows); }},
     {{"hours", Holds::number, "That they cover.", "h", When::always, {}, decimals},
      [](const RecordLine& line) -> Cell { return line.record.seconds / 3600.0; }},
+    {{"ambient_c", Holds::number, "Of the air.", "degC", When::always, {}, decimals},
+     [](const RecordLine& line) -> Cell { return line.record.ambient_c; }},
     {{"most_people", Holds::count, "At once.", "1"},
      [](const RecordLine& line) { return whole(line.record.most_people); }},
     {{"presence_share", Holds::number, "Share of rows with anybody there.", {}, When::always, {}, decimals},

@@ -21,7 +21,12 @@ namespace {
 // common spread (tried 1.65-1.78, 0.07-0.11).
 constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1.52, most_stature_m = 1.92;
 constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
-constexpr double pace_m_s = 1.2;                 // indoors; Ref: [Weidmann1993] has 1.34 in the open
+// Offices of all seasons: median of [Schiavon2013], log-normal spread of [Foldvary2018].
+constexpr double median_clo = 0.59, clo_log_sd = 0.37, least_clo = 0.3, most_clo = 1.5;
+constexpr double long_sleeves_clo = 0.59;  // trousers and shirt: 0.57 with short sleeves, 0.61 with long [ASHRAE55]
+constexpr double skin_sd_k = 0.72;         // 83 % of means lie within 1 K [Mehnert2000], foreheads 0.8 [Micheletti2022]
+constexpr double hair_sd = 0.1;            // assumed (0-0.2): of the head's share under hair
+constexpr double pace_m_s = 1.2;           // indoors; Ref: [Weidmann1993] has 1.34 in the open
 
 bool is_for(const SeatSpec& seat, std::string_view use) {
   return seat.uses.empty() || std::ranges::find(seat.uses, use) != seat.uses.end();
@@ -170,6 +175,16 @@ std::vector<std::string> beds_of(const HouseholdSpec& household, const SceneSpec
   return beds;
 }
 
+WarmthSpec drawn_warmth(std::uint64_t seed, std::uint32_t entity) {
+  Stream stream({seed, 0, entity, Purpose::schedule_warmth});
+  WarmthSpec warmth;
+  warmth.clothing_clo = std::clamp(median_clo * std::exp(clo_log_sd * stream.normal()), least_clo, most_clo);
+  if (warmth.clothing_clo < long_sleeves_clo) warmth.bare = {"head", "left_forearm", "right_forearm"};
+  warmth.skin_above_k = skin_sd_k * stream.normal();
+  warmth.hair_share = std::clamp(warmth.hair_share + hair_sd * stream.normal(), 0.0, 1.0);
+  return warmth;
+}
+
 }  // namespace
 
 PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity) {
@@ -181,6 +196,7 @@ PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t se
   person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
   person.walking_speed_m_s = pace_m_s;
   person.seat_scatter = {0.03, 4.0};
+  person.warmth = drawn_warmth(seed, entity);
   return person;
 }
 

@@ -23,7 +23,7 @@ struct ScheduledPerson {
   std::size_t room = 0;     ///< of guests: index into the schedule's meetings
 };
 
-/// Somebody of no particular size, drawn from the study's seed; entity: which of the people so drawn.
+/// Somebody of no particular size and clothing, drawn from the study's seed; entity: which of the people so drawn.
 [[nodiscard]] PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity);
 
 /// Staff in their order, then guests of meetings, then who cleans. Bodies are drawn from the study's seed and are the

@@ -142,9 +142,10 @@ struct Fields<WarmthSpec> {
   static constexpr const char* about = "How warm a person's surface is, for the physical response.";
   static constexpr std::tuple all{
       FIELD(skin_c, accepted::skin_c, "none: as the air's temperature has it"),
-      FIELD(clothing_clo, NumberRange{.min = 0.0, .max = 10.0}, "insulation of what covers the parts that aren't bare"),
-      FIELD(bare, "parts that show skin"),
-      FIELD(hair_share, NumberRange{.min = 0.0, .max = 1.0}, "of the head's surface that hair covers"),
+      FIELD(skin_above_k, NumberRange{.min = -10.0, .max = 10.0}, "by how much it is then warmer than others'"),
+      FIELD(clothing_clo, NumberRange{.min = 0.0, .max = 10.0}, "insulation of the whole outfit"),
+      FIELD(bare, "parts that show skin; hands always do"),
+      FIELD(hair_share, NumberRange{.min = 0.0, .max = 1.0}, "of a bare head's surface that hair covers"),
       FIELD(parts_c, "surface temperatures that are known, by part")};
 };
 template <>

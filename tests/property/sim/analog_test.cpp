@@ -53,9 +53,11 @@ double sum_of_squares(const Powers& powers) {
   return sum;
 }
 
+/// Skin all over.
+WarmthSpec bare() { return {.skin_c = 33.5, .clothing_clo = 0.0, .bare = {}, .hair_share = 0.0, .parts_c = {}}; }
 /// Of bare skin before a background.
 double contrast(double background_c) {
-  return pir::band_radiance(pir::kelvin(WarmthSpec{}.skin_c.value_or(33.5))) - pir::band_radiance(pir::kelvin(background_c));
+  return pir::band_radiance(pir::kelvin(33.5)) - pir::band_radiance(pir::kelvin(background_c));
 }
 
 /// Every power is `ratio` times what it was, but for a step of rounding a ray.
@@ -92,7 +94,7 @@ TEST_CASE("the sign of the power changes as the room gets warmer than its people
     CHECK(now < before);
     before = now;
   }
-  script.trials[0].people[0].warmth.clothing_clo = 0.0;
+  script.trials[0].people[0].warmth = bare();
   script.sensing.ambient_c = 20.0;
   const Powers cool = powers_of(scene, script);
   script.sensing.ambient_c = 40.0;
@@ -183,7 +185,8 @@ TEST_CASE("warm surfaces are the background before which people are seen", "[sim
   SceneSpec heated = scene;
   for (TriMesh& mesh : heated.meshes) mesh.temperature_c = 60.0;
   ScriptSpec script = walkers(1);
-  script.trials[0].people[0].warmth.clothing_clo = 0.0;
+  script.sensing.ambient_c = 20.0;
+  script.trials[0].people[0].warmth = bare();
   check_ratio(powers_of(heated, script), powers_of(scene, script), contrast(60.0) / contrast(20.0));
 }
 

@@ -238,15 +238,17 @@ TEST_CASE("a recording of any study serves its own and any other electronics, bi
 }
 
 TEST_CASE("another seed is another noise on the same people") {
-  SceneSpec scene = shipped_scene("open_office.gltf");
-  scene.sensor_models.begin()->second.detector.amplifier.noise_v_pp = 0.4;
-  const Model model = compile(scene, analog_office());
+  const auto office_with = [](double noise_v_pp) {
+    SceneSpec scene = shipped_scene("open_office.gltf");
+    for (auto& [id, model] : scene.sensor_models) model.detector.amplifier.noise_v_pp = noise_v_pp;
+    return scene;
+  };
+  const Model model = compile(office_with(0.4), analog_office());
   const Recording recording = record(model, std::vector<std::uint32_t>{0});
   const auto noisy = emitted(model, recording, {.effects = {}, .seed = 8});
   CHECK_FALSE(same_rows(noisy, emitted(model, recording)));
   CHECK(same_rows(noisy, emitted(model, recording, {.effects = {}, .seed = 8})));
-  scene.sensor_models.begin()->second.detector.amplifier.noise_v_pp = 0.0;
-  const Model silent = compile(scene, analog_office());
+  const Model silent = compile(office_with(0.0), analog_office());
   CHECK(same_rows(emitted(silent, recording, {.effects = {}, .seed = 8}), emitted(silent, recording)));
 }
 
