@@ -116,7 +116,7 @@ TEST_CASE("an analog sensor receives the breathing of a still sitter, which hard
       const sim::Actor& actor = state.run_state().crowd.actors().front();
       if (!actor.present() || actor.phase() != "working") continue;
       body::Outline now = actor.motion().outline();
-      now.spine_tilt = std::round((now.spine_tilt - actor.motion().breath()) * 1e9);
+      now.chest_m = 0.0;
       still = now == last ? still + 1 : 0;
       last = now;
       const auto& exposure = state.run_state().exposure();
