@@ -104,7 +104,7 @@ void NaturalMotion::be_still() {
   wait(repertoire().still.length_s(stream_.normal()) / liveliness_);
 }
 
-/// One is met in the middle of a still period, so that rates hold from the first moment on.
+/// One is met in the middle of a still period, or at the end of an act, so that rates hold from the first moment on.
 void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   situation_ = situation;
   home_.fill(0.0);
@@ -122,9 +122,10 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   motion.move_in_steps_of(std::max(1, tick_rate_hz_ / small_movements_hz));
   for (std::size_t i = 0; i < body::n_channels; ++i) motion.adjust(static_cast<Channel>(i), rest_[i], settles_s);
   act_ = nullptr;
-  phase_ = Phase::still;
+  const Cycle now = cycle();
+  phase_ = stream_.uniform() * now.mean_s < now.still_s ? Phase::still : Phase::returning;
   const double z = stream_.normal(), v = stream_.uniform();
-  wait(std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_));
+  wait(phase_ == Phase::still ? std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_) : settles_s);
 }
 
 /// Who begins to speak moves soon. Who listens looks there when they move next.
@@ -140,15 +141,18 @@ void NaturalMotion::attend(const Attention& attention) {
 /// By the renewal theorem: if an act and the stillness after it take c seconds on average, and a share p of the acts is
 /// of a kind, that kind comes p / c times a second. Habits come at their published rates times this person's
 /// liveliness; tasks fill what is left.
-ActKind NaturalMotion::draw_kind() {
+NaturalMotion::Cycle NaturalMotion::cycle() const {
   const Repertoire& all = repertoire();
-  const double task_s = mean_s(all.tasks);
+  const double task_s = mean_s(all.tasks), still_s = (1.0 - goes_on) * all.still.mean_s / liveliness_;
   double cycles = 1.0;
   for (const Habit& habit : all.habits) cycles -= habit.per_s * liveliness_ * (mean_s(habit.acts) - task_s);
-  const double cycle_s = ((1.0 - goes_on) * all.still.mean_s / liveliness_ + task_s) / cycles;
-  double left = stream_.uniform() / cycle_s;
+  return {(still_s + task_s) / cycles, still_s};
+}
+
+ActKind NaturalMotion::draw_kind() {
+  double left = stream_.uniform() / cycle().mean_s;
   for (std::size_t i = 0; i < n_habits; ++i) {
-    if ((left -= all.habits[i].per_s * liveliness_) < 0.0) return static_cast<ActKind>(i);
+    if ((left -= repertoire().habits[i].per_s * liveliness_) < 0.0) return static_cast<ActKind>(i);
   }
   return ActKind::task;
 }

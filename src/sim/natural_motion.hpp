@@ -54,6 +54,11 @@ class NaturalMotion {
   void be_still();
   void breathe(body::Motion& motion) const;
   void wait(double seconds);
+  /// Between two acts on average, from beginning to beginning; and what is stillness of it.
+  struct Cycle {
+    double mean_s, still_s;
+  };
+  [[nodiscard]] Cycle cycle() const;
   [[nodiscard]] ActKind draw_kind();
   [[nodiscard]] double& rest_of(body::Channel channel) { return rest_[static_cast<std::size_t>(channel)]; }
   [[nodiscard]] const Repertoire& repertoire() const noexcept {
