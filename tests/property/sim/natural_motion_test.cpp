@@ -209,6 +209,32 @@ TEST_CASE("still periods of natural sitters are log-normal, longer for readers",
   CHECK(distance_from_log_normal(by_power_law, low_s, 8.0, 1.4) > refused);
 }
 
+TEST_CASE("trunk, hands and head that move independently leave as few long stillnesses as the law's lower end") {
+  // Gaps as log-normal as looks at a screen are, at the published rates of trunk, hands to oneself, screens and head.
+  constexpr double spread = 1.7, hours = 5000.0;
+  std::vector<double> acts_s;
+  std::uint32_t process = 0;
+  for (const double per_hour : {88.0, 98.7, 3600.0 / 47.0, 227.0}) {
+    Stream stream({3, 0, process++, Purpose::test});
+    for (double now_s = 0.0; now_s < 3600.0 * hours;) {
+      acts_s.push_back(now_s);
+      now_s += 3600.0 / per_hour * std::exp(spread * (stream.normal() - 0.5 * spread));
+    }
+  }
+  std::ranges::sort(acts_s);
+  double long_ones = 0.0;
+  for (std::size_t i = 1; i < acts_s.size(); ++i) long_ones += acts_s[i] - acts_s[i - 1] > 300.0 ? 1.0 : 0.0;
+  const double an_hour = long_ones / hours, error = std::sqrt(long_ones) / hours;
+  // 278 still periods an hour of 8 s, as at a desk.
+  const auto by_law = [](double law) {
+    return 278.0 * 0.5 * std::erfc((std::log(300.0 / 8.0) / law + 0.5 * law) / std::sqrt(2.0));
+  };
+  INFO(an_hour << " +- " << error << " an hour, by 1.1, 1.2 and 1.3: " << by_law(1.1) << ", " << by_law(1.2) << ", "
+               << by_law(1.3));
+  CHECK(an_hour - 3.5 * error > by_law(1.1));
+  CHECK(an_hour + 3.5 * error < by_law(1.3));
+}
+
 TEST_CASE("natural movements keep joints within their limits, and speeds and accelerations bounded", "[seconds]") {
   // assumed: unhurried reaching and looking round. Seen were 0.95 m/s, 6.4 m/s2, 5.0 rad/s (a head that looks from one
   // side to the other) and 88 rad/s2 (a forearm that is lifted from the table turns about its own axis as well).
