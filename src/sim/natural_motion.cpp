@@ -24,8 +24,9 @@ constexpr int breath_levels = 8;  // a posture changes 16 times a breath instead
 // 25 changes a signal by 2.8 % of its rms, less
 // than 34 rays a zone do; 5 by 16 % (analog_test.cpp).
 constexpr int small_movements_hz = 25;
-constexpr double settles_s = 1.0;  // assumed (0.6-1.5): into the posture of a new activity
-constexpr double looks_s = 0.8;    // assumed (0.5-1): the head turns to who speaks
+constexpr double settles_s = 1.0;   // assumed (0.6-1.5): into the posture of a new activity
+constexpr double act_ends_s = 2.0;  // assumed (1-4): what is left of the act that one is met in
+constexpr double looks_s = 0.8;     // assumed (0.5-1): the head turns to who speaks
 constexpr double speaks_up_s = 1.0;
 constexpr double farthest_look = radians(50);
 
@@ -125,7 +126,7 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   const Cycle now = cycle();
   phase_ = stream_.uniform() * now.mean_s < now.still_s ? Phase::still : Phase::returning;
   const double z = stream_.normal(), v = stream_.uniform();
-  wait(phase_ == Phase::still ? std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_) : settles_s);
+  wait(phase_ == Phase::still ? std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_) : act_ends_s);
 }
 
 /// Who begins to speak moves soon. Who listens looks there when they move next.
