@@ -110,13 +110,14 @@ JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint
   Vec3 in_child = joint_in(humanoid, link.child, joint, Vec3(0, 1, 0));
   const Vec3 hips_in_torso = glm::conjugate(posture[at(Part::torso)].rotation) *
                              (posture[at(Part::pelvis)].origin - posture[at(Part::torso)].origin);
+  const Vec3 in_torso(0, hips_in_torso.y, hips_in_torso.z);  // z: breath moves the solid and none of its joints
   switch (joint) {
     case Joint::spine:
-      in_child = Vec3(0, hips_in_torso.y, 0);
+      in_child = in_torso;
       break;
     case Joint::left_shoulder:
     case Joint::right_shoulder:
-      in_parent = Vec3(0, hips_in_torso.y, 0) + shoulder(m, side);
+      in_parent = in_torso + shoulder(m, side);
       break;
     case Joint::left_ankle:
     case Joint::right_ankle:
@@ -128,7 +129,7 @@ JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint
   if (joint == Joint::neck) {
     const double behind = neck_behind_m(m);
     in_child = Vec3(0, -humanoid.radius_m(Part::head), behind);
-    in_parent = Vec3(0, m.stature_m - 2.0 * humanoid.radius_m(Part::head) - m.hip_height_m + hips_in_torso.y, behind);
+    in_parent = in_torso + Vec3(0, m.stature_m - 2.0 * humanoid.radius_m(Part::head) - m.hip_height_m, behind);
   }
   return {posture[at(link.parent)] * in_parent, posture[at(link.child)] * in_child};
 }

@@ -190,7 +190,7 @@ void Motion::rise() {
     MinJerk& chair = channels_[static_cast<std::size_t>(Channel::chair_turn)];
     chair.move_to(0.0, ticks(chair_turn_s));
   }
-  breath_ = 0.0;
+  chest_m_ = 0.0;
   stage_ = in_bed() ? Stage::getting_up : Stage::rising;
 }
 

@@ -61,6 +61,7 @@ struct Outline {
   double hand_offset_m = 0.0;            ///< of the left hand ahead of its base place
   double head_turn = 0.0;                ///< to the left
   double spine_lean = 0.0;               ///< to the right
+  double chest_m = 0.0;                  ///< see Pose
   std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0
   std::array<double, 2> hand_up_m{};
   std::array<double, 2> hand_to_head{};  ///< left, right; 0 to 1
@@ -118,8 +119,7 @@ class Motion {
   void move_in_steps_of(int n_ticks) noexcept { channel_step_ = n_ticks; }
   /// Where it goes or rests.
   [[nodiscard]] double target(Channel which) const noexcept { return channel(which).target(); }
-  [[nodiscard]] double breath() const noexcept { return breath_; }
-  void breathe(double radians) noexcept { breath_ = radians; }  ///< tilt of the spine from now on, as it is
+  void breathe(double metres) noexcept { chest_m_ = metres; }  ///< the chest is so far forward from now on
   [[nodiscard]] double pace_m_s() const noexcept { return manner_.pace_m_s; }
   /// From the next walk, sitting down or rising on, instead of the paper's manner at the person's own pace.
   void set_manner(const Manner& manner) noexcept { manner_ = manner; }
@@ -213,7 +213,7 @@ class Motion {
   std::array<MinJerk, n_channels> channels_;
   int channel_step_ = 1;        ///< ticks
   int since_channel_step_ = 0;  ///< ticks
-  double breath_ = 0.0;
+  double chest_m_ = 0.0;
   MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
   DeskWork work_;
   std::int64_t work_tick_ = 0;

@@ -71,7 +71,7 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
 }
 
 double Motion::spine_tilt() const noexcept {
-  const double more = channel(Channel::trunk_tilt).value() + breath_;
+  const double more = channel(Channel::trunk_tilt).value();
   if (fall_.settled()) return more == 0.0 ? tilt_.value() : swayed(tilt_.value() + more);
   const double s = std::sin(pi * std::clamp(fall_.value(), 0.0, 1.0));
   return tilt_.value() + lean_while_falling * s * s;
@@ -115,6 +115,7 @@ Outline Motion::outline() const noexcept {
   if (in_bed() && lying_.value() > 0.0) outline.lying = lying_outline();
   outline.head_turn = channel(Channel::head_turn).value();
   outline.spine_lean = channel(Channel::trunk_lean).value();
+  outline.chest_m = chest_m_;
   outline.hand_to_head = {std::clamp(channel(Channel::left_hand_to_head).value(), 0.0, 1.0),
                           std::clamp(channel(Channel::right_hand_to_head).value(), 0.0, 1.0)};
   if (outline.fall > 0.0) outline.thigh_angle = seating_.seated_thigh_angle();
@@ -180,8 +181,12 @@ void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const 
         Vec3(foot.print.position.x, ankle_height + foot.lift_m, foot.print.position.y)};
   }
   if (changed.arms) pose.arms = arms_of(humanoid, outline, pose);
-  if (outline.lying.progress > 0.0 && changed.hips) lie_down(pose, humanoid, outline.lying);
+  if (outline.lying.progress > 0.0 && changed.hips) {
+    pose.chest_m = 0.0;  // breath lifts nobody
+    lie_down(pose, humanoid, outline.lying);
+  }
   if (changed.arms) raise_hands(pose.arms, humanoid, outline);
+  pose.chest_m = outline.chest_m;
 }
 
 Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {

@@ -15,11 +15,14 @@ bool differ(const Value& a, const Value& b) noexcept {
 Limbs changes(const Outline& a, const Outline& b) noexcept {
   Limbs changed;
   if (a.lying.progress > 0.0 || b.lying.progress > 0.0) {  // what hangs on the surface hangs together
-    const bool any = differ(a, b);
-    return {any, any, any, any, {any, any}};
+    Outline same_breath = a;
+    same_breath.chest_m = b.chest_m;
+    const bool any = differ(same_breath, b);
+    return {any, any, differ(a.chest_m, b.chest_m), any, any, {any, any}};
   }
   changed.hips = differ(a.pelvis, b.pelvis) || differ(a.hip_height_m, b.hip_height_m);
   changed.spine = differ(a.spine_tilt, b.spine_tilt) || differ(a.spine_lean, b.spine_lean);
+  changed.chest = differ(a.chest_m, b.chest_m);
   changed.head = differ(a.head_turn, b.head_turn);
   const bool floor = differ(a.floor_height_m, b.floor_height_m);
   for (const std::size_t side : {0U, 1U}) changed.ankles[side] = floor || differ(a.feet[side], b.feet[side]);
@@ -40,7 +43,7 @@ std::uint32_t parts_of(const Limbs& changed) noexcept {
   const bool trunk = changed.hips || changed.spine;
   std::uint32_t parts = 0;
   if (changed.hips) parts |= bit(Part::pelvis);
-  if (trunk) parts |= bit(Part::torso);
+  if (trunk || changed.chest) parts |= bit(Part::torso);
   if (trunk || changed.head) parts |= bit(Part::head);
   for (const std::size_t side : {0U, 1U}) {
     if (trunk || changed.arms) parts |= bit(Part::left_upper_arm, side) | bit(Part::left_forearm, side);

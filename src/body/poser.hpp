@@ -12,6 +12,7 @@ namespace pirsim::body {
 struct Limbs {
   bool hips = true;
   bool spine = true;
+  bool chest = true;
   bool head = true;
   bool arms = true;
   std::array<bool, 2> ankles{true, true};

@@ -111,9 +111,10 @@ void update(Posture& posture, const Humanoid& humanoid, const Pose& pose, const 
   const Frame& hips = pose.world_from_hips;
   const bool trunk = changed.hips || changed.spine;
   if (changed.hips) posture[at(Part::pelvis)] = {glm::normalize(hips.rotation * hips_from_pelvis()), hips.origin};
-  if (trunk || changed.head || changed.arms) {
+  if (trunk || changed.chest || changed.head || changed.arms) {
     const Frame torso = world_from_torso(pose);
-    if (trunk) posture[at(Part::torso)] = {torso.rotation, torso * Vec3(0, torso_centre(humanoid), 0)};
+    if (trunk || changed.chest)
+      posture[at(Part::torso)] = {torso.rotation, torso * Vec3(0, torso_centre(humanoid), -pose.chest_m)};
     if (trunk || changed.head) posture[at(Part::head)] = world_from_head(humanoid, torso, pose.head_turn);
     for (std::size_t side : {0U, 1U}) {
       if (trunk || changed.arms) put_arm(m, torso, pose.arms[side], side, posture);

@@ -47,6 +47,7 @@ struct Pose {
   double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
   double spine_lean = 0.0;                ///< radians, positive to the right
   double head_turn = 0.0;                 ///< radians about the neck, positive to the left
+  double chest_m = 0.0;                   ///< by which breath has moved the torso's solid forward; no joint moves
   std::array<Frame, 2> world_from_ankle;  ///< origin in the ankle joint, facing as the foot does
   std::array<ArmPose, 2> arms;
 };

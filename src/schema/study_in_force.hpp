@@ -56,7 +56,7 @@ struct SensingInForce : SensingSpec {
 
 enum class FidgetTiming {
   independent,   ///< a Poisson process
-  still_periods  ///< with still periods of all lengths in between, as a power law has them
+  still_periods  ///< with still periods of all lengths in between, as of people of natural style
 };
 /// Small moves of somebody seated, of which no script says when.
 struct FidgetSpec {

@@ -1,6 +1,8 @@
 // What people of natural style do with their bodies, as data: acts with amplitude, duration, frequency and source.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -9,8 +11,9 @@
 
 namespace pirsim::sim {
 
-/// What an act is to those who count them. Shifts and fidgets have rates of their own; tasks fill what is left.
-enum class ActKind { shift, fidget, task };
+/// What an act is to those who count them. All but tasks have rates of their own; tasks fill what is left.
+enum class ActKind { shift, fidget, touch, look, task };
+inline constexpr std::size_t n_habits = 4;  ///< kinds before tasks
 
 /// One movement of one channel, to a target drawn between the bounds: relative to where the channel rests, or, of an
 /// act that stays, to where it is at home.
@@ -44,31 +47,31 @@ struct Hold {
   double value;
 };
 
-/// Still periods: a power law between two ends.
+/// Still periods are log-normal.
 struct StillPeriods {
-  double exponent;  ///< of the share of periods that are longer
-  double shortest_s, longest_s;
+  double mean_s;
 
-  [[nodiscard]] double mean_s() const noexcept;
-  /// u: uniform in [0, 1).
-  [[nodiscard]] double length_s(double u) const noexcept;
-  /// What is left of the period that one meets at a random moment of stillness.
-  [[nodiscard]] double rest_s(double u, double v) const noexcept;
+  /// z: standard normal.
+  [[nodiscard]] double length_s(double z) const noexcept;
+  /// What is left of the period that one meets at a random moment of stillness. v: uniform in [0, 1).
+  [[nodiscard]] double rest_s(double z, double v) const noexcept;
 };
 
-/// Posture shifts and fidgets of seated office workers, a second. Ref: [ApplErgon2024]: 9 and 13 in 15 minutes.
-inline constexpr double shift_rate_per_s = 9.0 / 900.0;
-inline constexpr double fidget_rate_per_s = 13.0 / 900.0;
+/// Acts of a kind, and how often the mean person carries out one of them.
+struct Habit {
+  std::span<const Act> acts;
+  double per_s = 0.0;
+};
 
-/// All that somebody does in one situation. Shifts and fidgets may be empty, tasks not.
+/// All that somebody does in one situation. Habits may be empty, tasks not.
 struct Repertoire {
-  std::span<const Act> shifts, fidgets, tasks;
+  std::array<Habit, n_habits> habits;  ///< in the order of ActKind
+  std::span<const Act> tasks;
   std::span<const Hold> holds;
   StillPeriods still;
-  double shifts_per_s = shift_rate_per_s, fidgets_per_s = fidget_rate_per_s;  ///< of the mean person
 
   [[nodiscard]] std::span<const Act> acts(ActKind kind) const noexcept {
-    return kind == ActKind::shift ? shifts : kind == ActKind::fidget ? fidgets : tasks;
+    return kind == ActKind::task ? tasks : habits[static_cast<std::size_t>(kind)].acts;
   }
 };
 

@@ -16,14 +16,17 @@ constexpr double goes_on = 0.4;        // assumed (0.2-0.6): another act follows
 constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of a person's rate
 constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
-constexpr double breath_tilt = radians(0.25);                       // assumed (0.1-0.5): +-2.4 mm at the shoulders
-constexpr int breath_levels = 4;  // to either side: a posture changes 16 times a breath instead of 200 times
+// How far the chest comes forward while head and limbs lie still: of sitters, Ref: [DeGroote1997]: 3 to 5 mm; lying,
+// where the belly moves more [KanekoHorie2012], assumed (3-10).
+constexpr double breath_m = 0.004, breath_lying_m = 0.006;
+constexpr int breath_levels = 8;  // a posture changes 16 times a breath instead of 200 times
 // How often a posture changes in small movements, or the next higher rate that divides the ticks: `assumed` (5 to 50).
 // 25 changes a signal by 2.8 % of its rms, less
 // than 34 rays a zone do; 5 by 16 % (analog_test.cpp).
 constexpr int small_movements_hz = 25;
-constexpr double settles_s = 1.0;  // assumed (0.6-1.5): into the posture of a new activity
-constexpr double looks_s = 0.8;    // assumed (0.5-1): the head turns to who speaks
+constexpr double settles_s = 1.0;   // assumed (0.6-1.5): into the posture of a new activity
+constexpr double act_ends_s = 2.0;  // assumed (1-4): what is left of the act that one is met in
+constexpr double looks_s = 0.8;     // assumed (0.5-1): the head turns to who speaks
 constexpr double speaks_up_s = 1.0;
 constexpr double farthest_look = radians(50);
 
@@ -99,10 +102,10 @@ void NaturalMotion::wait(double seconds) {
 void NaturalMotion::be_still() {
   act_ = nullptr;
   phase_ = Phase::still;
-  wait(repertoire().still.length_s(stream_.uniform()) / liveliness_);
+  wait(repertoire().still.length_s(stream_.normal()) / liveliness_);
 }
 
-/// One is met in the middle of a still period, so that rates hold from the first moment on.
+/// One is met in the middle of a still period, or at the end of an act, so that rates hold from the first moment on.
 void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   situation_ = situation;
   home_.fill(0.0);
@@ -120,9 +123,10 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   motion.move_in_steps_of(std::max(1, tick_rate_hz_ / small_movements_hz));
   for (std::size_t i = 0; i < body::n_channels; ++i) motion.adjust(static_cast<Channel>(i), rest_[i], settles_s);
   act_ = nullptr;
-  phase_ = Phase::still;
-  const double u = stream_.uniform(), v = stream_.uniform();
-  wait(std::max(settles_s, repertoire().still.rest_s(u, v) / liveliness_));
+  const Cycle now = cycle();
+  phase_ = stream_.uniform() * now.mean_s < now.still_s ? Phase::still : Phase::returning;
+  const double z = stream_.normal(), v = stream_.uniform();
+  wait(phase_ == Phase::still ? std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_) : act_ends_s);
 }
 
 /// Who begins to speak moves soon. Who listens looks there when they move next.
@@ -136,18 +140,22 @@ void NaturalMotion::attend(const Attention& attention) {
 }
 
 /// By the renewal theorem: if an act and the stillness after it take c seconds on average, and a share p of the acts is
-/// of a kind, that kind comes p / c times a second. Shifts and fidgets come at their published rates times this
-/// person's liveliness; tasks fill what is left.
-ActKind NaturalMotion::draw_kind() {
+/// of a kind, that kind comes p / c times a second. Habits come at their published rates times this person's
+/// liveliness; tasks fill what is left.
+NaturalMotion::Cycle NaturalMotion::cycle() const {
   const Repertoire& all = repertoire();
-  const double shifts = all.shifts.empty() ? 0.0 : all.shifts_per_s * liveliness_;
-  const double fidgets = all.fidgets.empty() ? 0.0 : all.fidgets_per_s * liveliness_;
-  const double task_s = mean_s(all.tasks);
-  const double still_s = (1.0 - goes_on) * all.still.mean_s() / liveliness_;
-  const double cycle_s =
-      (still_s + task_s) / (1.0 - shifts * (mean_s(all.shifts) - task_s) - fidgets * (mean_s(all.fidgets) - task_s));
-  const double u = stream_.uniform() / cycle_s;
-  return u < shifts ? ActKind::shift : u < shifts + fidgets ? ActKind::fidget : ActKind::task;
+  const double task_s = mean_s(all.tasks), still_s = (1.0 - goes_on) * all.still.mean_s / liveliness_;
+  double cycles = 1.0;
+  for (const Habit& habit : all.habits) cycles -= habit.per_s * liveliness_ * (mean_s(habit.acts) - task_s);
+  return {(still_s + task_s) / cycles, still_s};
+}
+
+ActKind NaturalMotion::draw_kind() {
+  double left = stream_.uniform() / cycle().mean_s;
+  for (std::size_t i = 0; i < n_habits; ++i) {
+    if ((left -= repertoire().habits[i].per_s * liveliness_) < 0.0) return static_cast<ActKind>(i);
+  }
+  return ActKind::task;
 }
 
 void NaturalMotion::begin_act() {
@@ -197,7 +205,8 @@ double NaturalMotion::return_to_rest(body::Motion& motion) {
 /// In steps, so that who breathes doesn't move at every tick.
 void NaturalMotion::breathe(body::Motion& motion) const {
   const double breath = std::sin(2.0 * pi * (breath_phase_ + breath_hz_ * static_cast<double>(tick_) / tick_rate_hz_));
-  motion.breathe(breath_tilt * std::round(breath * breath_levels) / breath_levels);
+  const double depth_m = motion.stage() == Stage::lying ? breath_lying_m : breath_m;
+  motion.breathe(depth_m * std::round(0.5 * (1.0 + breath) * breath_levels) / breath_levels);
 }
 
 void NaturalMotion::settle(body::Motion& motion, std::optional<Activity> activity) const {

@@ -24,7 +24,7 @@ class NaturalMotion {
 
   /// Metres per second, this person's in this run: normal about the script's, cut at two standard deviations.
   [[nodiscard]] double pace(double scripted_m_s) const noexcept;
-  /// This person's rate of shifts and fidgets relative to the mean person's.
+  /// This person's rate of all acts but tasks relative to the mean person's.
   [[nodiscard]] double liveliness() const noexcept { return liveliness_; }
   /// Before the first tick of somebody who has stood there all along: in the middle of a breath, and of the activity.
   void settle(body::Motion& motion, std::optional<Activity> activity) const;
@@ -54,6 +54,11 @@ class NaturalMotion {
   void be_still();
   void breathe(body::Motion& motion) const;
   void wait(double seconds);
+  /// Between two acts on average, from beginning to beginning; and what is stillness of it.
+  struct Cycle {
+    double mean_s, still_s;
+  };
+  [[nodiscard]] Cycle cycle() const;
   [[nodiscard]] ActKind draw_kind();
   [[nodiscard]] double& rest_of(body::Channel channel) { return rest_[static_cast<std::size_t>(channel)]; }
   [[nodiscard]] const Repertoire& repertoire() const noexcept {
@@ -75,7 +80,7 @@ class NaturalMotion {
   int repeats_left_ = 0;
   std::int64_t tick_ = 0;
   std::int64_t next_ = 0;  ///< tick at which the next stroke, way back or stillness begins
-  std::array<std::int64_t, 3> begun_{};
+  std::array<std::int64_t, n_habits + 1> begun_{};
 };
 
 }  // namespace pirsim::sim

@@ -10,9 +10,6 @@ namespace pirsim::sim {
 namespace {
 
 constexpr double bout_s = 20.0;  // assumed (10-60): swinging and stillness take turns in stretches of this length
-// As of people of natural style. Ref: [Nakamura2007]
-constexpr StillPeriods between_fidgets{0.9, 1.0, 600.0};
-
 }  // namespace
 
 Restlessness::Restlessness(const PersonChanges& changes, std::uint64_t seed, std::uint32_t run, std::uint32_t person,
@@ -52,9 +49,9 @@ void Restlessness::fidget(body::Motion& motion) {
     if (--ticks_to_fidget_ > 0) return;
     const bool first = ticks_to_fidget_ < 0;
     // Nobody sits down just after a fidget: else the first of the long pauses would come too late.
-    const double u = fidget_stream_.uniform();
-    const double pause_s = first ? between_fidgets.rest_s(u, fidget_stream_.uniform()) : between_fidgets.length_s(u);
-    ticks_to_fidget_ = ticks(pause_s / (between_fidgets.mean_s() * fidgeting_.rate_per_s));
+    const StillPeriods between_fidgets{1.0 / fidgeting_.rate_per_s};
+    const double z = fidget_stream_.normal();
+    ticks_to_fidget_ = ticks(first ? between_fidgets.rest_s(z, fidget_stream_.uniform()) : between_fidgets.length_s(z));
     if (first) return;
   }
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;

@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const body::Humanoid man{PersonSpec{}};
-  std::cout << "activity,person,liveliness,shifts,fidgets,tasks,still_s\n";
+  std::cout << "activity,person,liveliness,shifts,fidgets,touches,looks,tasks,still_s\n";
   for (const Activity activity : {Activity::typing, Activity::reading, Activity::meeting, Activity::phone}) {
     for (int person = 0; person < n_people; ++person) {
       Sitter sitter(static_cast<std::uint32_t>(person), man, desk_seat());
@@ -39,9 +39,10 @@ int main(int argc, char** argv) {
       }
       const sim::NaturalMotion& natural = sitter.natural;
       for (const double still_s : observer.still_s()) {
-        std::cout << activity_names[static_cast<std::size_t>(activity)] << ',' << person << ',' << natural.liveliness()
-                  << ',' << natural.begun(sim::ActKind::shift) << ',' << natural.begun(sim::ActKind::fidget) << ','
-                  << natural.begun(sim::ActKind::task) << ',' << still_s << '\n';
+        std::cout << activity_names[static_cast<std::size_t>(activity)] << ',' << person << ',' << natural.liveliness();
+        for (std::size_t kind = 0; kind <= sim::n_habits; ++kind)
+          std::cout << ',' << natural.begun(static_cast<sim::ActKind>(kind));
+        std::cout << ',' << still_s << '\n';
       }
     }
   }

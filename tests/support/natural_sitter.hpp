@@ -16,20 +16,10 @@ inline constexpr int tick_rate_hz = 50;
 /// The joints, but for breathing.
 inline std::array<double, 14> joints(const Motion& motion) {
   const Outline o = motion.outline();
-  return {o.pelvis.heading,
-          o.pelvis.position.x,
-          o.pelvis.position.y,
-          o.spine_tilt - motion.breath(),
-          o.spine_lean,
-          o.head_turn,
-          o.reach,
-          o.hand_ahead_m[0],
-          o.hand_ahead_m[1],
-          o.hand_up_m[0],
-          o.hand_up_m[1],
-          o.hand_to_head[0],
-          o.hand_to_head[1],
-          o.hand_offset_m};
+  return {
+      o.pelvis.heading,  o.pelvis.position.x, o.pelvis.position.y, o.spine_tilt,   o.spine_lean,   o.head_turn,
+      o.reach,           o.hand_ahead_m[0],   o.hand_ahead_m[1],   o.hand_up_m[0], o.hand_up_m[1], o.hand_to_head[0],
+      o.hand_to_head[1], o.hand_offset_m};
 }
 
 inline bool differ(const std::array<double, 14>& a, const std::array<double, 14>& b) {

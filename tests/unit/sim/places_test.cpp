@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "body/lying.hpp"
@@ -183,7 +184,7 @@ TEST_CASE("specs refuse what a place is for but nobody knows, and a name that is
   CHECK_THAT(refused(twice, alone({})), contains("sofa"));
 }
 
-TEST_CASE("sleepers turn over as often as accelerometers tell, and keep to a law of still periods",
+TEST_CASE("sleepers turn over as often as accelerometers tell, and move as often and as long as cameras tell",
           "[places][seconds]") {
   constexpr int tick_rate_hz = 10, people = 40;
   constexpr double hours = 6.0;
@@ -191,7 +192,8 @@ TEST_CASE("sleepers turn over as often as accelerometers tell, and keep to a law
   bed.world_from_place.origin.y = 0.5;
   bed.edge.world_from_seat = {rotation_from_heading(-0.5 * pi),
                               {0.2, 0.5 + body::edge_height_m(body::test::man()), 0.0}};
-  double turns = 0.0, expected = 0.0, other = 0.0;
+  double turns = 0.0, hours_of_mean_person = 0.0;
+  std::vector<double> movements_s;
   for (std::uint32_t i = 0; i < people; ++i) {
     const double falls_m = body::fall_back_m(body::test::man(), bed.edge);
     body::Motion motion(body::test::man(), {0.2 + falls_m, 0.0}, -0.5 * pi, 0.0, 1.0 / tick_rate_hz);
@@ -201,7 +203,8 @@ TEST_CASE("sleepers turn over as often as accelerometers tell, and keep to a law
     while (motion.stage() != body::Stage::lying) motion.advance();
     sim::NaturalMotion sleeper(7, 0, i, tick_rate_hz);
     double rolled = 0.0;
-    int turned = 0;
+    int turned = 0, moving_ticks = 0;
+    body::Outline last = motion.outline();
     for (int tick = 0; tick < static_cast<int>(hours * 3600.0) * tick_rate_hz; ++tick) {
       sleeper.tick(motion, Activity::sleeping, {});
       motion.advance();
@@ -209,13 +212,22 @@ TEST_CASE("sleepers turn over as often as accelerometers tell, and keep to a law
       if (std::abs(roll - rolled) > 1e-9) ++turned;
       rolled = roll;
       REQUIRE(std::abs(roll) < 0.56 * pi);
+      body::Outline now = motion.outline();
+      now.chest_m = last.chest_m;  // who merely breathes keeps still
+      if (now != last) ++moving_ticks;
+      if (now == last && moving_ticks > 0) movements_s.push_back(std::exchange(moving_ticks, 0) * 1.0 / tick_rate_hz);
+      last = now;
     }
     turns += turned;
-    expected += 1.6 * hours * sleeper.liveliness();
-    other += static_cast<double>(sleeper.begun(sim::ActKind::fidget));
+    hours_of_mean_person += hours * sleeper.liveliness();
   }
-  // Poisson: a standard error of a twentieth.
-  CHECK(turns == Approx(expected).epsilon(0.15));
-  CHECK(turns != Approx(2.0 * expected).epsilon(0.15));
-  CHECK(other == Approx(1.1 / 1.6 * expected).epsilon(0.2));
+  // Standard errors: a twentieth of the turns (Poisson), and a thirtieth of all movements, whose gaps vary 2.5 times as
+  // much as a Poisson process's.
+  CHECK(turns == Approx(1.6 * hours_of_mean_person).epsilon(0.15));
+  CHECK(turns != Approx(3.2 * hours_of_mean_person).epsilon(0.15));
+  const double an_hour = static_cast<double>(movements_s.size()) / hours_of_mean_person;
+  CHECK(an_hour == Approx(11.0).epsilon(0.15));
+  CHECK(an_hour != Approx(6.8).epsilon(0.15));  // those of large groups of muscles alone
+  std::ranges::nth_element(movements_s, movements_s.begin() + static_cast<std::ptrdiff_t>(movements_s.size() / 2));
+  CHECK(movements_s[movements_s.size() / 2] == Approx(4.0).margin(1.0));
 }
