@@ -259,7 +259,7 @@ TEST_CASE("a file's rated targets and sensitivity are read, and refused for lens
       "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n";
   const std::string sources =
       "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', mean: 'quoted: d', "
-      "sd: 'assumed: e', zones: 'quoted: f', width_m: 'quoted: g'}\n";
+      "sd: 'assumed: e', zones: 'quoted: f', width_m: 'quoted: g', lens_step: 'quoted: h'}\n";
   const std::string sensitivity = "sensitivity: {mean: 1.36, sd: 0.1}\n";
   const auto model = model_of(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}]\n");
   REQUIRE(model.targets.size() == 1);

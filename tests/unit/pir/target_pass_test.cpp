@@ -93,7 +93,7 @@ TEST_CASE("far away the power falls with the square of the distance and near by 
   // The plate within the zone: aperture times contrast times the plate's own solid angle.
   for (const double distance_m : {24.0, 48.0}) {
     const auto power =
-        crossings(model, 0, 1, 20000)[0].power({.target = {}, .distance_m = distance_m}, aperture_m2, tick_s);
+        crossings(model, 0, 1, 160000)[0].power({.target = {}, .distance_m = distance_m}, aperture_m2, tick_s);
     const double plate_sr = 0.25 * 0.7 / (distance_m * distance_m);
     CHECK(largest(power) == Approx(aperture_m2 * contrast * plate_sr).epsilon(0.04));
   }
