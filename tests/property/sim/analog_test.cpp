@@ -129,7 +129,9 @@ TEST_CASE("what the lens' steps receive doesn't depend on the electronics, whose
   const std::size_t n_steps = 3;
   REQUIRE(powers[0].size() == 5 * n_steps);
 
-  const Model model = compile(scene, walkers(1)), model_of_other = compile(other, walkers(1));
+  ScriptSpec script = walkers(1);
+  script.sensing.units = Units::guaranteed;
+  const Model model = compile(scene, script), model_of_other = compile(other, script);
   int n_differ = 0;
   for (const Model* of : {&model, &model_of_other}) {
     const SensorModelSpec& sensor = of->scene().sensor_models.begin()->second;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -62,7 +64,7 @@ void add_cells(const Square& zone, double plane_m, double blur_deg, std::vector<
     const double sigma = blur_m / side_m;
     return below((t + 0.5) / sigma) - below((t - 0.5) / sigma);
   };
-  const int n = 36;
+  const int n = 64;
   const double step = (1.0 + 2.0 * margin) / n;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
@@ -128,10 +130,10 @@ double largest(const std::vector<double>& values) {
 /// A body that moves along +X at a distance of `ahead_m`; does somebody look at it in this direction?
 using Hit = std::function<bool(const Direction&, double x_m)>;
 
-Hit plate(double ahead_m, double width_m, double height_m) {
+Hit plate(double ahead_m, double up_m, double width_m, double height_m) {
   return [=](const Direction& d, double x_m) {
     const double scale = ahead_m / -d.z;
-    return std::abs(d.x * scale - x_m) <= 0.5 * width_m && std::abs(d.y * scale) <= 0.5 * height_m;
+    return std::abs(d.x * scale - x_m) <= 0.5 * width_m && std::abs(d.y * scale - up_m) <= 0.5 * height_m;
   };
 }
 
@@ -187,10 +189,14 @@ class SecondModel {
   [[nodiscard]] std::vector<double> volts(const Hit& hit, double ahead_m, double speed_m_s, double contrast,
                                           double dt) const {
     const double end_m = reach(ahead_m), step_m = 0.008 * ahead_m;
+    std::vector<Cell> met;  // others look past the body wherever it is
+    std::ranges::copy_if(cells_, std::back_inserter(met), [&](const Cell& cell) {
+      return hit(cell.direction, cell.direction.x * ahead_m / -cell.direction.z);
+    });
     std::vector<double> at;
     for (double x = -end_m; x <= end_m; x += step_m) {
       double sum = 0.0;
-      for (const Cell& cell : cells_) sum += hit(cell.direction, x) ? cell.worth_sr : 0.0;
+      for (const Cell& cell : met) sum += hit(cell.direction, x) ? cell.worth_sr : 0.0;
       at.push_back(contrast * sum);
     }
     std::vector<double> input;
@@ -201,7 +207,7 @@ class SecondModel {
     }
     return filtered(input, dt, thermal_s_, electrical_s_);
   }
-  static double reach(double ahead_m) { return 2.2 * ahead_m + 1.0; }  // out of every zone at either end
+  static double reach(double ahead_m) { return 1.6 * ahead_m + 0.5; }  // out of every zone at either end
 
  private:
   /// The sum over the ways to the left and right: these lenses' facets nearest to the axis are above or below it.
@@ -223,7 +229,7 @@ class SecondModel {
   }
   double peak(const std::vector<Cell>& cells, const Direction& ahead, const Direction& along, const Direction& across,
               double range_m) const {
-    const double contrast = radiance(24.0) - radiance(20.0), dt = 0.005, half_way_m = 0.35 * range_m + 0.5;
+    const double contrast = radiance(24.0) - radiance(20.0), dt = 0.01, half_way_m = 0.35 * range_m + 0.5;
     std::vector<double> input;
     for (double x = -half_way_m; x < half_way_m + 2.0; x += dt * 1.0) {  // 1 m/s, and time to settle
       double sum = 0.0;
@@ -258,10 +264,15 @@ class Pirsim {
     model_ = std::make_unique<sim::AnalogModel>(scene_, sensing_, room_);
   }
   [[nodiscard]] const sim::CalibratedSensor& sensor() const { return *model_->sensors()[0]; }
-  /// Of a body of this warmth in a room of 20 degC, one value a tick.
+  /// Of a body of this warmth in a room of 20 degC, one value a tick. may_meet: leaves out rays that never do.
   [[nodiscard]] std::vector<double> volts(const std::function<PosedShape(double t_s)>& body, double duration_s,
-                                          double celsius) const {
+                                          double celsius, const std::function<bool(const Ray&)>& may_meet) const {
     const sim::PowerModel& power = model_->power();
+    const std::vector<Ray>& rays = power.rays().bundle.rays;
+    std::vector<std::uint32_t> met;
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+      if (may_meet(rays[i])) met.push_back(i);
+    }
     const double radiance = pir::band_radiance(pir::kelvin(celsius));
     pir::AnalogFilter::Sections sections = sensor().silent_filter.at_rest(0.0);
     std::vector<double> volts;
@@ -269,8 +280,8 @@ class Pirsim {
     for (double t = 0.0; t <= duration_s; t += sensor().tick_s) {
       const PosedShape solid = body(t);
       std::vector<sim::PowerSteps> powers(power.n_receivers(), 0);
-      for (std::uint32_t ray = 0; ray < power.rays().bundle.rays.size(); ++ray) {
-        if (entry_distance(power.rays().bundle.rays[ray], solid, pir::out_of_sight_m))
+      for (const std::uint32_t ray : met) {
+        if (entry_distance(rays[ray], solid, pir::out_of_sight_m))
           powers[power.receiver_of(ray)] += power.power(ray, radiance);
       }
       const double now_w = model_->watts(0, powers);
@@ -295,7 +306,7 @@ double on_time(const std::vector<double>& volts, double threshold_v, double dt) 
 }  // namespace
 
 TEST_CASE("a second model of the chain, from the lens's law to volts, agrees on who crosses at 2 to 12 m",
-          "[sim][analog][seconds]") {
+          "[sim][analog][minutes]") {
   for (const char* id : {"EKMC1604111", "EKMC1601111"}) {
     const SensorModelSpec lens = io::read_sensor_model(test::data(std::string("sensors/") + id + ".yaml"));
     const SecondModel second(lens);
@@ -306,33 +317,39 @@ TEST_CASE("a second model of the chain, from the lens's law to volts, agrees on 
     for (std::size_t step = 0; step < second.gains().size(); ++step) {
       const double gain =
           calibrated.sensor().rated_watts_per_step[step] / sim::watts_per_step * own_m2 * volts_per_watt;
-      WARN(id << " step " << step + 1 << ": " << gain << " and " << second.gains()[step] << " V m2/W");
       CHECK(gain == Approx(second.gains()[step]).epsilon(0.03));
     }
-    const double top_m = 1.75, eye_m = 1.2, radius_m = 0.15;
+    const double top_m = 1.75, eye_m = 1.2, radius_m = 0.15, threshold_v = lens.detector.comparator.positive_v;
     for (const double ahead_m : {2.0, 5.0, 12.0}) {
-      const Hit a_plate = plate(ahead_m, 0.25, 0.7), a_pillar = pillar(ahead_m, radius_m, top_m, eye_m);
+      if (ahead_m > 2.0 * lens.clusters[0].range_m) continue;
+      if (ahead_m > 2.0 * lens.clusters[0].range_m) continue;
+      const double end_m = SecondModel::reach(ahead_m);
+      const double up_m = lens.id == "EKMC1604111" ? 0.0 : 0.126 * ahead_m;  // through a row of zones
       for (const double speed_m_s : {0.2, 0.8, 2.5}) {
         const int rate_hz = std::max(20, static_cast<int>(speed_m_s / (0.006 * ahead_m)));
-        const Pirsim pirsim(lens, rate_hz, 233);
+        const Pirsim pirsim(lens, rate_hz, 377);
         for (const bool is_plate : {true, false}) {
-          const double celsius = is_plate ? 24.0 : 27.0;
-          const double end_m = SecondModel::reach(ahead_m);
-          const auto body = [&](double t_s) -> PosedShape {
-            const auto x = static_cast<float>(speed_m_s * t_s - end_m), z = static_cast<float>(-ahead_m);
-            if (is_plate) return PosedBox{{x, 0.0F, z}, glm::mat3(1.0F), {0.125F, 0.35F, 1e-4F}};
+          if (is_plate && ahead_m > 5.0 && speed_m_s < 0.5) continue;  // next to no signal, but for steps of the rays
+          const double celsius = is_plate ? 24.0 : 27.0, dt = 1.0 / rate_hz;
+          const auto body_at = [&](double x_m) -> PosedShape {
+            const auto x = static_cast<float>(x_m), z = static_cast<float>(-ahead_m);
+            if (is_plate) return PosedBox{{x, static_cast<float>(up_m), z}, glm::mat3(1.0F), {0.125F, 0.35F, 1e-4F}};
             const auto r = static_cast<float>(radius_m), eye = static_cast<float>(eye_m);
             return PosedCapsule{{x, r - eye, z}, {x, static_cast<float>(top_m) - r - eye, z}, r};
           };
-          const std::vector<double> volts = pirsim.volts(body, 2.0 * end_m / speed_m_s, celsius);
-          const double dt = 1.0 / rate_hz, threshold_v = lens.detector.comparator.positive_v;
+          const std::vector<double> volts = pirsim.volts(
+              [&](double t_s) { return body_at(speed_m_s * t_s - end_m); }, 2.0 * end_m / speed_m_s, celsius,
+              [&](const Ray& ray) {
+                const double x_m = ray.direction.x * ahead_m / -ray.direction.z;
+                return entry_distance(ray, body_at(x_m), pir::out_of_sight_m).has_value();
+              });
+          const Hit hit = is_plate ? plate(ahead_m, up_m, 0.25, 0.7) : pillar(ahead_m, radius_m, top_m, eye_m);
           const std::vector<double> expected =
-              second.volts(is_plate ? a_plate : a_pillar, ahead_m, speed_m_s, radiance(celsius) - radiance(20.0), dt);
+              second.volts(hit, ahead_m, speed_m_s, radiance(celsius) - radiance(20.0), dt);
           INFO(id << (is_plate ? " plate" : " pillar") << ", " << ahead_m << " m, " << speed_m_s << " m/s");
-          WARN(id << (is_plate ? " plate" : " pillar") << ", " << ahead_m << " m, " << speed_m_s << " m/s: peak "
-                  << largest(volts) << " and " << largest(expected) << " V, on " << on_time(volts, threshold_v, dt)
-                  << " and " << on_time(expected, threshold_v, dt) << " s");
           CHECK(largest(volts) == Approx(largest(expected)).epsilon(0.05));
+          CHECK(on_time(volts, threshold_v, dt) ==
+                Approx(on_time(expected, threshold_v, dt)).epsilon(0.05).margin(2.0 * dt));
         }
       }
     }
@@ -343,6 +360,7 @@ TEST_CASE("a lens that is turned in its file and held the other way round sees t
           "[sim][analog][turned][seconds]") {
   for (const std::string& id : test::shipped_lenses()) {
     const SensorModelSpec lens = io::read_sensor_model(test::data("sensors/" + id + ".yaml"));
+    const auto any = [](const Ray&) { return true; };
     // Past the sensor and a little towards it, off the axis.
     const auto walker = [](float side) {
       return [=](double t_s) -> PosedShape {
@@ -352,12 +370,12 @@ TEST_CASE("a lens that is turned in its file and held the other way round sees t
                             0.17F};
       };
     };
-    const std::vector<double> drawn = Pirsim(lens, 25, 34).volts(walker(1), 5.0, 27.0);
+    const std::vector<double> drawn = Pirsim(lens, 25, 34).volts(walker(1), 5.0, 27.0, any);
     REQUIRE(largest(drawn) > 0.05);
     for (const test::Turn& turn : test::all_turns) {
       const Quat held = glm::angleAxis(radians(turn.mirror * -90.0 * turn.quarters), Vec3(0, 0, 1));
       const Pirsim turned(test::turned(lens, turn), 25, 34, held);
-      const std::vector<double> volts = turned.volts(walker(static_cast<float>(turn.mirror)), 5.0, 27.0);
+      const std::vector<double> volts = turned.volts(walker(static_cast<float>(turn.mirror)), 5.0, 27.0, any);
       double most = 0.0;
       for (std::size_t i = 0; i < volts.size(); ++i) most = std::max(most, std::abs(volts[i] - drawn[i]));
       INFO(id << ", " << test::name(turn));
@@ -365,7 +383,7 @@ TEST_CASE("a lens that is turned in its file and held the other way round sees t
     }
     // Its twin that must fail: turned, but held as before. Lenses with four equal sides don't mind.
     if (id == "EKMC1604111")
-      CHECK(largest(Pirsim(test::turned(lens, test::Turn{1, 1}), 25, 34).volts(walker(1), 5.0, 27.0)) !=
+      CHECK(largest(Pirsim(test::turned(lens, test::Turn{1, 1}), 25, 34).volts(walker(1), 5.0, 27.0, any)) !=
             Approx(largest(drawn)).epsilon(0.05));
   }
 }
