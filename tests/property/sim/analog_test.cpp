@@ -131,7 +131,9 @@ TEST_CASE("what the lens' steps receive doesn't depend on the electronics, whose
   const std::size_t n_steps = 3;
   REQUIRE(powers[0].size() == 5 * n_steps);
 
-  const Model model = compile(scene, walkers(1)), model_of_other = compile(other, walkers(1));
+  ScriptSpec script = walkers(1);
+  script.sensing.units = Units::guaranteed;
+  const Model model = compile(scene, script), model_of_other = compile(other, script);
   int n_differ = 0;
   for (const Model* of : {&model, &model_of_other}) {
     const SensorModelSpec& sensor = of->scene().sensor_models.begin()->second;
@@ -141,7 +143,7 @@ TEST_CASE("what the lens' steps receive doesn't depend on the electronics, whose
       for (std::size_t s = 0; s < 5; ++s) {
         double watts = 0.0;
         for (std::size_t step = 0; step < n_steps; ++step) {
-          const double aperture_m2 = calibration.apertures_m2[pir::reference_facet(sensor, static_cast<int>(step) + 1)];
+          const double aperture_m2 = calibration.apertures_m2.at(static_cast<int>(step) + 1);
           watts += static_cast<double>(row[s * n_steps + step]) * sim::watts_per_step * aperture_m2 /
                    (1e-6 * sensor.optics.aperture_mm2);
         }
