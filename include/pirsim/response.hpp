@@ -13,7 +13,7 @@ namespace pirsim {
 /// The response in force: the study's word, or else the sensor model's own.
 [[nodiscard]] Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const SensorSpec& sensor);
 
-/// For a reader, with the models of sensors that give it: "analog (EKMC1604111)", "zones (DUAL_DOME) and analog (...)".
+/// For a reader, with the models of sensors that give it: "analog (EKMC1604111)", "zones (HC-SR501) and analog (...)".
 [[nodiscard]] std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing);
 
 /// A warning for each sensor model that hard zones leave numbers of unused: those that differ from the defaults, which

@@ -123,7 +123,7 @@ TEST_CASE("the wall lens reaches 1.4 times as far for 8 K as its data sheet says
 }
 
 TEST_CASE("a sensor without power at its rated distance can't be calibrated") {
-  SensorModelSpec model = model_named("DUAL_DOME");
+  SensorModelSpec model = model_named("HC-SR501");
   for (ClusterSpec& cluster : model.clusters) {
     for (ZoneSpec& zone : cluster.zones) zone.corners = {Vec2(0.0), Vec2(0.0), Vec2(0.0), Vec2(0.0)};
   }
