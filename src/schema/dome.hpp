@@ -13,7 +13,7 @@ namespace pirsim {
 /// Small lenses on a dome before a dual element: two strips side by side, wired in opposition. How facets are laid out:
 /// docs/formats/sensor.md.
 struct DomeSpec {
-  int lenses = 30;                 ///< small ones, the facets; each throws two zones (`assumed`; 10 to 40)
+  int lenses = 29;                 ///< small ones, the facets; each throws two zones (`assumed`; 10 to 40)
   double wide_deg = 110.0;         ///< field of view from the left edge to the right (`assumed`; 60 to 170)
   std::optional<double> tall_deg;  ///< from the lower edge to the upper; none: as wide_deg
   double focal_mm = 12.0;          ///< from the element to each facet (`assumed`; 8 to 25)
