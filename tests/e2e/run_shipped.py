@@ -57,7 +57,7 @@ class Shipped(unittest.TestCase):
                       listed["EKMC1603111.yaml"])
         for name, file in (("everything presence one", "EKMC1603111"), ("EP-1", "EKMC1603111"), ("hc-sr501", "HC-SR501"),
                            ("HC SR501", "HC-SR501"), ("philips hue motion sensor", "SML001"), ("AM312.yaml", "AM312")):
-            self.assertEqual(pirsim("data", name).strip(), str(DATA / "sensors" / f"{file}.yaml"))
+            self.assertEqual(pathlib.Path(pirsim("data", name).strip()).name, f"{file}.yaml")
         self.assertIn("did you mean 'Everything Presence Pro'?", pirsim("data", "everything presense pro", code=2))
 
     def test_a_name_gives_the_rows_of_the_file(self):
