@@ -2,6 +2,7 @@
 """Writes data/sensors/<model>.yaml: Panasonic's lenses from data/sensors/lens_library.json, modules and devices of
 other makes from the numbers below. Run it after the library or these numbers change."""
 import json
+import math
 import pathlib
 
 SENSORS = pathlib.Path(__file__).resolve().parent.parent / "data" / "sensors"
@@ -17,6 +18,7 @@ def sources_of(name, lens):
     confidence = CONFIDENCE.get(name, "every zone found in it")
     sources = {"plane_m": "quoted: the plane on which the catalogue draws the zones",
                "x_m": DRAWING + confidence, "y_m": DRAWING + confidence}
+    distance_m, page, is_plane, targets = RATED[name]
     if name == "EKMC1604111":
         law = "inferred: from the quad (" + QUAD + ") and the drawing, "
         sources["half_spacing_ratio"] = law + "0.5 * sqrt(2) * 1.0 mm / 10.0 mm"
@@ -24,25 +26,43 @@ def sources_of(name, lens):
         sources["range_m"] = sources["lens_step"] = "quoted: 12, 6 and 3 m for the first, second and third lens step"
     else:
         sources["zone_side_m"] = DRAWING + "side of a single zone"
-        sources["range_m"] = RANGES_M[name][1]
+        sources["range_m"] = f"quoted: {CATALOGUE}, p. {page}: up to {distance_m:g} m, drawn as an arc"
+        if is_plane:
+            sources["range_m"] = (f"inferred: {CATALOGUE}, p. {page}, rates a plane {distance_m:g} m ahead; each "
+                                  "facet's distance is as far as that plane in its direction")
+            sources["lens_step"] = "inferred: facets that see the plane from equally far away have equal apertures"
         sources["pitch_m"] = pitch_source(lens)
         if any("missing_element" in facet for facet in lens["facets"]):
             sources["missing"] = DRAWING + "three of the four zones are drawn"
+    for key in dict.fromkeys(key for target in targets for key in target if key != "lens_step"):
+        sources[key] = f"quoted: {CATALOGUE}, p. {page}"
     sources["polarity"] = "assumed: neighbours on the quad differ; considered: checkerboard, all the same"
     return sources | detector_sources(PAPIRS_DETECTOR)
 
 
-RANGES_M = {
-    "EKMC1601111": (5, "quoted: 'lens 01: 5 m distance standard', ordering information of the EKMB series"),
-    "EKMC1603111": (12, "quoted: 'lens 03: 12 m long distance', ordering information of the EKMB series"),
-    "AMN32111": (2, "quoted: 2 m, distributor's data of the AMN32112J (same lens in white)"),
-    "AMN34111": (10, "quoted: 10 m, distributor's data of the AMN34112J (same lens in white)"),
-    "EKMC1606111": (12, "assumed: as the other long-distance lens (03), range considered 5 to 12 m"),
-    "EKMC1607111": (5, "assumed: as lens 01, which is drawn on the same plane, range considered 3 to 8 m"),
-    "EKMC1691111": (5, "assumed: as lens 01, which is drawn on the same plane, range considered 2 to 8 m"),
-    "EKMC1693111": (5, "assumed: as lens 01, which is drawn on the same plane, range considered 2 to 8 m"),
-    "AMN31111": (5, "assumed: as lens 01, which is drawn on the same plane, range considered 3 to 8 m"),
-    "AMN33111": (5, "assumed: the plane on which the zones are drawn, range considered 5 to 10 m"),
+CATALOGUE = "Panasonic's catalogue of PIR motion sensors (2020)"
+SLIGHT = {"width_m": 0.2, "height_m": 0.2, "speed_m_s": 0.5, "zones": 1}
+WITHIN_RINGS_DEG = 1.0  # facets that are equally far off the axis but for how exactly a drawing is read
+
+
+def slight_motion(*rings):
+    return [{"lens_step": ring} | SLIGHT for ring in rings]
+
+
+# Rated distance in metres, page, whether a plane that far ahead is rated (the drawing ends at it) and not an arc, and
+# the targets of lens steps that aren't a plate of 700 x 250 mm at 1 m/s that crosses two zones.
+RATED = {
+    "EKMC1607111": (5, 6, False, []),
+    "EKMC1601111": (5, 7, False, []),
+    "EKMC1691111": (2.5, 8, True, slight_motion(1, 2, 3)),
+    "EKMC1693111": (2.2, 9, True, slight_motion(1, 2, 3) + [{"lens_step": 4, "width_m": 0.2, "height_m": 0.4}]),
+    "EKMC1606111": (12, 10, True, []),
+    "EKMC1604111": (None, 12, False, []),
+    "EKMC1603111": (12, 13, False, []),
+    "AMN31111": (5, 17, False, []),
+    "AMN32111": (2, 18, True, slight_motion(1, 2, 3)),
+    "AMN33111": (5, 19, True, []),
+    "AMN34111": (10, 20, False, []),
 }
 
 
@@ -50,6 +70,12 @@ QUOTED_ANALOG = "quoted: data sheet of the analogue sibling EKMC26, "
 REFERENCE_DESIGNS = "Texas Instruments' reference designs TIDA-010027 (0.3 to 6.5 Hz) and TIDA-00489 (0.7 to 10.6 Hz)"
 # Keys of a detector, their values and where they come from; docs/physics/analog.md explains them.
 PAPIRS_DETECTOR = {
+    "sensitivity": {
+        "mean": (1.36, "inferred: " + CATALOGUE + ", p. 14: detection sensitivity 5.6 uW/cm2 on average, 7.6 at most, "
+                       "which is the guaranteed least: 7.6 / 5.6"),
+        "sd": (0.1, "assumed: 7.6 uW/cm2 lies three standard deviations off the average, ln(7.6 / 5.6) / 3, so that "
+                    "nearly all units are 1 to 1.85 times as sensitive; range considered 0.07 to 0.15"),
+    },
     "element": {
         "thermal_s": (0.15, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (1.0, "assumed: nobody says; range considered 0.3 to 3"),
@@ -90,7 +116,20 @@ def pitch_ratio(lens):
     return sum(drawn) / len(drawn) if drawn else 1.0 / 0.6
 
 
-def facet_line(facet, lens):
+def off_axis_deg(facet, lens):
+    return math.degrees(math.atan2(math.hypot(facet["x"], facet["y"]), lens["plane_m"]))
+
+
+def rings(lens):
+    """Where the rings of facets begin, degrees off the axis."""
+    begins = []
+    for angle in sorted(off_axis_deg(facet, lens) for facet in lens["facets"]):
+        if not begins or angle > begins[-1] + WITHIN_RINGS_DEG:
+            begins.append(angle)
+    return begins
+
+
+def facet_line(name, facet, lens):
     fields = {"x_m": facet["x"] + 0.0, "y_m": facet["y"] + 0.0}
     if "step" in facet:
         fields |= {"lens_step": facet["step"], "range_m": facet["range_m"]}
@@ -99,6 +138,11 @@ def facet_line(facet, lens):
         fields |= {"zone_side_m": facet["zone_side_m"], "pitch_m": pitch}
         if "missing_element" in facet:
             fields["missing"] = "outer"
+        distance_m, _, is_plane, _ = RATED[name]
+        if is_plane:
+            angle = off_axis_deg(facet, lens)
+            fields["lens_step"] = sum(begin <= angle for begin in rings(lens))
+            fields["range_m"] = round(distance_m / math.cos(math.radians(angle)), 2)
     return "  - {" + ", ".join(f"{key}: {value}" for key, value in fields.items()) + "}"
 
 
@@ -106,13 +150,17 @@ def yaml_of(name, lens):
     lines = ["# Written by tools/make_sensors.py from lens_library.json; the format is docs/formats/sensor.md.",
              f"id: {name}", f"description: Panasonic PaPIRs {lens['family'].split(' (')[0]}, {lens['zones']} zones",
              f"plane_m: {float(lens['plane_m'])}"]
+    distance_m, _, is_plane, targets = RATED[name]
     if name == "EKMC1604111":
         lines += ["layout: diamond", "half_spacing_ratio: 0.0707", "half_diagonal_ratio: 0.0424"]
     else:
-        lines += ["layout: square", f"range_m: {float(RANGES_M[name][0])}"]
+        lines += ["layout: square"] + ([] if is_plane else [f"range_m: {float(distance_m)}"])
+    if targets:
+        lines += ["targets:"] + ["  - {" + ", ".join(f"{key}: {value}" for key, value in target.items()) + "}"
+                                 for target in targets]
     lines += ["polarity: checkerboard", *detector_lines(PAPIRS_DETECTOR), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources_of(name, lens).items()]
-    lines += ["facets:"] + [facet_line(facet, lens) for facet in lens["facets"]]
+    lines += ["facets:"] + [facet_line(name, facet, lens) for facet in lens["facets"]]
     return "\n".join(lines) + "\n"
 
 
@@ -249,13 +297,15 @@ def wide_cluster(middle, spacing, step):
 
 def wide_yaml():
     sources = {"plane_m": "quoted: the plane on which the catalogue draws the zones",
-               "range_m": "quoted: up to 5 m", "lens_step": "quoted: area A (4 K), then area B to its sides (8 K)",
+               "range_m": f"quoted: {CATALOGUE}, p. 11: up to 5 m, drawn as an arc",
+               "lens_step": "quoted: area A, then area B to its sides",
+               "contrast_k": f"quoted: {CATALOGUE}, p. 11: 8 K in area B",
                "corners_m": WIDE_DRAWING + "; sizes inferred from the quad (" + QUAD + ")",
                "polarity": "assumed: neighbours on the quad differ; considered: checkerboard, all the same"}
     sources |= detector_sources(PAPIRS_DETECTOR)
     lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", "id: EKMC1605111",
              "description: Panasonic PaPIRs EKM 05 horizontally wide, 104 zones", "plane_m: 1.0", "range_m: 5.0",
-             *detector_lines(PAPIRS_DETECTOR), "sources:"]
+             "targets:", "  - {lens_step: 2, contrast_k: 8}", *detector_lines(PAPIRS_DETECTOR), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources.items()] + ["clusters:"]
     for facet in WIDE_FACETS_M:
         lines += wide_cluster(*facet)

@@ -52,6 +52,7 @@ enum class Purpose : std::uint32_t {
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read
+  sensor_unit = 302,     ///< how sensitive one sensor is among those of its make; the same in all runs
   // Of datasets, from 400 on.
   room = 400,            ///< size, furniture and sensors of a parametric room; entity: which try
   room_people = 401,     ///< how many people a room has, and of which role

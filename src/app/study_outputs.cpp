@@ -162,9 +162,16 @@ io::Manifest manifest_of(const Model& model) {
                          .resolved_script = io::to_yaml(model.script()),
                          .seed = model.script().seed,
                          .study_runs = model.n_runs()};
-  for (const SensorSpec& sensor : model.scene().sensors) {
-    const Response response = response_of(model.scene(), model.script().sensing, sensor);
-    manifest.provenance.responses.emplace_back(sensor.id, word_of(response));
+  const SensingSpec& sensing = model.script().sensing;
+  for (std::uint32_t i = 0; i < model.scene().sensors.size(); ++i) {
+    const SensorSpec& sensor = model.scene().sensors[i];
+    const Response response = response_of(model.scene(), sensing, sensor);
+    std::string words = word_of(response);
+    if (response == Response::analog && sensing.units != Units::typical) {
+      const double times = unit_sensitivity(model.scene(), sensing.units, model.script().seed, i);
+      words += std::string(", ") + word_of(sensing.units) + ": " + fixed(times, 2);
+    }
+    manifest.provenance.responses.emplace_back(sensor.id, std::move(words));
   }
   manifest.tracer = tracer_used(model);
   manifest.runs = {0, model.n_runs()};

@@ -197,27 +197,77 @@ double solid_angle_sr(const SensorModelSpec& model, const ZoneSpec& zone) {
                   triangle_solid_angle(corner(0), corner(2), corner(3)));
 }
 
-std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n) {
-  const auto& [c0, c1, c2, c3] = zone.corners;
-  // As the zone law has it, an angle covers |(x, y, plane)| times itself along the drawing's axes.
-  const double reach_m = glm::length(on_plane(model, (c0 + c1 + c2 + c3) * 0.25));
-  const double blur_m = std::tan(radians(model.optics.blur_deg)) * reach_m;
-  const BlurredSide along(blur_m / glm::length(c1 - c0)), across(blur_m / glm::length(c3 - c0));
-  std::vector<WeightedDirection> directions;
-  double sum = 0.0;
-  for (int i = 0; i < n; ++i) {
-    double ignored = 0.0;
-    const double u = along.quantile((i + 0.5) / n);
-    const double v = across.quantile(std::modf((i + 0.5) * std::numbers::phi, &ignored));
-    const Vec2 lower = c0 * (1.0 - u) + c1 * u, upper = c3 * (1.0 - u) + c2 * u;
-    const Vec3 point = on_plane(model, lower * (1.0 - v) + upper * v);
-    const double distance = glm::length(point);
-    directions.push_back({point / distance, 1.0 / (distance * distance * distance)});  // as a plane's area is seen
-    sum += directions.back().solid_angle_sr;
+namespace {
+
+/// A zone as its point spread blurs it, over the unit square.
+class BlurredZone {
+ public:
+  BlurredZone(const SensorModelSpec& model, const ZoneSpec& zone)
+      : model_(model), zone_(zone), along_(blur(1)), across_(blur(3)) {}
+
+  [[nodiscard]] const BlurredSide& along() const noexcept { return along_; }
+  [[nodiscard]] const BlurredSide& across() const noexcept { return across_; }
+  /// Through points of the square, each worth as much of the zone.
+  [[nodiscard]] std::vector<WeightedDirection> through(std::span<const Vec2> points) const {
+    std::vector<WeightedDirection> directions;
+    double sum = 0.0;
+    for (const Vec2& at : points) {
+      const Vec3 point = on_plane(model_, bilinear(zone_.corners, at.x, at.y));
+      const double distance = glm::length(point);
+      directions.push_back({point / distance, 1.0 / (distance * distance * distance)});  // as a plane's area is seen
+      sum += directions.back().solid_angle_sr;
+    }
+    const double scale = solid_angle_sr(model_, zone_) / sum;
+    for (WeightedDirection& each : directions) each.solid_angle_sr *= scale;
+    return directions;
   }
-  const double scale = solid_angle_sr(model, zone) / sum;
-  for (WeightedDirection& each : directions) each.solid_angle_sr *= scale;
-  return directions;
+
+ private:
+  /// Of the side from the first corner to another one. As the zone law has it, an angle covers |(x, y, plane)| times
+  /// itself along the drawing's axes.
+  [[nodiscard]] BlurredSide blur(std::size_t corner) const {
+    const double reach_m = glm::length(on_plane(model_, centre_of(zone_.corners)));
+    const double blur_m = std::tan(radians(model_.optics.blur_deg)) * reach_m;
+    return BlurredSide(blur_m / glm::length(zone_.corners[corner] - zone_.corners[0]));
+  }
+
+  const SensorModelSpec& model_;
+  const ZoneSpec& zone_;
+  BlurredSide along_, across_;
+};
+
+/// Point i of n of a rank-1 lattice.
+Vec2 lattice_point(int i, int n) {
+  double ignored = 0.0;
+  return {(i + 0.5) / n, std::modf((i + 0.5) * std::numbers::phi, &ignored)};
+}
+
+}  // namespace
+
+std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n) {
+  const BlurredZone blurred(model, zone);
+  std::vector<Vec2> points;
+  for (int i = 0; i < n; ++i) {
+    const Vec2 at = lattice_point(i, n);
+    points.emplace_back(blurred.along().quantile(at.x), blurred.across().quantile(at.y));
+  }
+  return blurred.through(points);
+}
+
+std::vector<WeightedDirection> symmetric_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n) {
+  const BlurredZone blurred(model, zone);
+  std::vector<Vec2> points;
+  const auto add_mirrored = [&](double along, double across) {
+    for (const double u : {along, 1.0 - along}) {
+      for (const double v : {across, 1.0 - across}) points.emplace_back(u, v);
+    }
+  };
+  for (int i = 0; i < n / 8; ++i) {
+    const Vec2 at = lattice_point(i, n / 8);
+    add_mirrored(blurred.along().quantile(at.x), blurred.across().quantile(at.y));
+    add_mirrored(blurred.along().quantile(at.y), blurred.across().quantile(at.x));
+  }
+  return blurred.through(points);
 }
 
 double aperture_m2(const OpticsSpec& optics) noexcept {

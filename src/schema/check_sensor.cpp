@@ -1,3 +1,5 @@
+#include <set>
+
 #include "schema/spec_faults.hpp"
 
 namespace pirsim {
@@ -42,6 +44,16 @@ void check_together(const DetectorSpec& detector, const TellFault& tell) {
   }
 }
 
+void check_together(const SensorModelSpec& model, const TellFault& tell) {
+  std::set<int> known, told;
+  for (const ClusterSpec& cluster : model.clusters) known.insert(cluster.lens_step);
+  for (const RatedTargetSpec& target : model.targets) {
+    const std::string step = "lens step " + std::to_string(target.lens_step);
+    if (!known.contains(target.lens_step)) tell("targets", "no facet is of " + step);
+    if (!told.insert(target.lens_step).second) tell("targets", step + " has two targets");
+  }
+}
+
 std::string corners_fault(const ZoneSpec& zone) {
   int left = 0;
   int right = 0;
@@ -63,6 +75,9 @@ void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& fault
   faults.fields(model, path);
   if (model.clusters.empty()) faults.error(path.field("clusters"), "expected a list that isn't empty");
   for (std::size_t i = 0; i < model.clusters.size(); ++i) check(model.clusters[i], path.item("clusters", i), faults);
+  for (std::size_t i = 0; i < model.targets.size(); ++i) faults.fields(model.targets[i], path.item("targets", i));
+  faults.together(model, path);
+  faults.fields(model.sensitivity, path.field("sensitivity"));
   faults.fields(model.optics, path.field("optics"));
   const SpecPath detector = path.field("detector");
   faults.fields(model.detector.element, detector.field("element"));

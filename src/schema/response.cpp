@@ -1,6 +1,7 @@
 #include "pirsim/response.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "pirsim/random.hpp"
 #include "schema/fields.hpp"
 
 namespace pirsim {
@@ -16,13 +18,23 @@ Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const S
   return sensing.response.value_or(scene.sensor_models.at(sensor.model).response);
 }
 
+double unit_sensitivity(const SceneSpec& scene, Units units, std::uint64_t seed, std::uint32_t sensor) {
+  const SensitivitySpec& make = scene.sensor_models.at(scene.sensors[sensor].model).sensitivity;
+  if (units == Units::guaranteed) return 1.0;
+  if (units == Units::typical) return make.mean;
+  Stream stream({seed, 0, sensor, Purpose::sensor_unit});
+  return make.mean * std::exp(make.sd * stream.normal() - 0.5 * make.sd * make.sd);
+}
+
 std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing) {
   std::map<Response, std::set<std::string>> models;
   for (const SensorSpec& sensor : scene.sensors) models[response_of(scene, sensing, sensor)].insert(sensor.model);
   std::string text;
   for (const auto& [response, names] : models) {
+    const bool tells_units = response == Response::analog && sensing.units != Units::typical;
     text += (text.empty() ? "" : " and ") + std::string(word_of(response)) + " (" +
-            joined(std::vector(names.begin(), names.end()), ", ") + ')';
+            joined(std::vector(names.begin(), names.end()), ", ") +
+            (tells_units ? ", " + std::string(word_of(sensing.units)) + " units)" : ")");
   }
   return text;
 }

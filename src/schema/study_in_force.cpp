@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pirsim/geometry.hpp"
+#include "pirsim/response.hpp"
 #include "pirsim/survey.hpp"
 #include "schema/occupancy_actions.hpp"
 
@@ -31,6 +32,8 @@ void add_occupancy(const OccupancySpec& occupancy, const ScriptSpec& script, con
 
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
   StudyInForce study{std::move(scene), {script.sensing}, script.seed, {}};
+  for (std::uint32_t i = 0; i < study.scene.sensors.size(); ++i)
+    study.scene.sensors[i].gain *= unit_sensitivity(study.scene, script.sensing.units, script.seed, i);
   for (const TrialSpec& trial : script.trials) {
     TrialInForce& own = study.trials.emplace_back(
         TrialInForce{trial.id, {}, trial.duration_s, trial.schedule, clock_of(script, trial)});

@@ -95,14 +95,10 @@ DetectorSpec without_noise(DetectorSpec spec) {
 CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
   const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
-  std::map<int, double> by_step;
-  for (std::size_t i = 0; i < model.clusters.size(); ++i) {
-    by_step[model.clusters[i].lens_step] =
-        calibration.apertures_m2[i] / pir::aperture_m2(model.optics) * watts_per_step;
-  }
   CalibratedSensor sensor{
       model, tick_s, 1.0, {model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}, {}};
-  for (const auto& [step, watts] : by_step) sensor.rated_watts_per_step.push_back(watts);
+  for (const auto& [step, aperture_m2] : calibration.apertures_m2)
+    sensor.rated_watts_per_step.push_back(aperture_m2 / pir::aperture_m2(model.optics) * watts_per_step);
   return sensor;
 }
 

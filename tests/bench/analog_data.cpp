@@ -13,17 +13,19 @@ namespace {
 
 using namespace pirsim;
 
-/// Up to which distance each lens step's reference facet detects the data sheet's plate.
+/// Up to which distance each lens step detects its maker's plate.
 void write_ranges(const SensorModelSpec& model) {
   const pir::Calibration calibration = pir::calibrate(model);
   std::cout << "lens_step,speed_m_s,difference_k,range_m\n";
-  for (int step = 1; pir::reference_facet(model, step) < model.clusters.size(); ++step) {
-    const std::size_t facet = pir::reference_facet(model, step);
+  for (const auto& [step, aperture_m2] : calibration.apertures_m2) {
+    const pir::RatedStep facets(model, step);
     for (const double speed : {0.25, 0.5, 1.0, 2.0, 4.0}) {
       for (double difference = 0.5; difference < 20.0; difference *= std::pow(2.0, 0.25)) {
-        const pir::TargetPass pass{.speed_m_s = speed, .temperature_difference_k = difference};
+        pir::TargetPass pass = facets.rated();
+        pass.target.speed_m_s = speed;
+        pass.target.contrast_k = difference;
         std::cout << step << ',' << speed << ',' << difference << ','
-                  << pir::detection_range(model, calibration, facet, pass) << '\n';
+                  << facets.detection_range(aperture_m2 * calibration.volts_per_watt, pass) << '\n';
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "core/text.hpp"
@@ -55,13 +56,14 @@ Quad square(const Vec2& facet, double pitch_m, double side_m) {
   return quad;
 }
 
-/// Index of the zone that lies farthest from the lens axis.
-std::size_t outermost(const Quad& quad) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < 4; ++i) {
-    if (glm::dot(quad.centres[i], quad.centres[i]) > glm::dot(quad.centres[best], quad.centres[best])) best = i;
-  }
-  return best;
+/// Index of the zone that lies farthest from the lens axis; none if two do.
+std::optional<std::size_t> outermost(const Quad& quad) {
+  const auto off_axis_m = [&](std::size_t zone) { return glm::length(quad.centres[zone]); };
+  std::array<std::size_t, 4> zones{0, 1, 2, 3};
+  std::ranges::sort(zones, std::greater{}, off_axis_m);
+  constexpr double equal = 1e-9;
+  if (off_axis_m(zones[0]) - off_axis_m(zones[1]) <= equal * off_axis_m(zones[0])) return std::nullopt;
+  return zones[0];
 }
 
 std::vector<ZoneSpec> zones_of(const Quad& quad, Polarity polarity, Missing missing) {
@@ -109,6 +111,10 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
   } else {
     const double side = map.required_number("zone_side_m", length_m);
     quad = square(cluster.centre, map.optional_number("pitch_m", length_m).value_or(pitch_to_side * side), side);
+  }
+  if (missing == Missing::outer && !outermost(quad)) {
+    faults.error(map.where("missing"),
+                 "facet: missing: no single zone is the outermost: two are equally far off the axis");
   }
   cluster.zones = zones_of(quad, law.polarity, missing);
   check_corners(cluster, "facet", node.where(), faults);
@@ -191,6 +197,10 @@ const std::vector<std::string>& sourced_keys() {
                                  "corners_m"};
     add_keys<DomeSpec>(all);
     add_keys<OpticsSpec>(all);
+    add_keys<SensitivitySpec>(all);
+    each_field<RatedTargetSpec>([&](const auto& field) {
+      if (field.name != std::string_view("lens_step")) all.emplace_back(field.name);
+    });
     const std::vector<std::string> detector = sourced_detector_keys();
     all.insert(all.end(), detector.begin(), detector.end());
     return all;
@@ -207,7 +217,8 @@ void collect_sourced_keys(const YamlNode& node, std::vector<YamlKey>& found) {
       const std::string& name = keys[i].name;
       if (name == "sources") continue;
       const auto same = [&](const YamlKey& key) { return key.name == name; };
-      const bool sourced = std::find(sourced_keys().begin(), sourced_keys().end(), name) != sourced_keys().end();
+      const bool sourced = std::find(sourced_keys().begin(), sourced_keys().end(), name) != sourced_keys().end() &&
+                           !(name == "zones" && items[i].is_list());  // a cluster's, not how many a target crosses
       if (sourced && std::none_of(found.begin(), found.end(), same)) found.push_back(keys[i]);
     }
     collect_sourced_keys(items[i], found);
@@ -239,6 +250,16 @@ void check_sources(YamlMap& map, const YamlNode& root) {
     if (!sources.has(key.name) && !is_misspelt)
       faults.error(key.where, "'" + key.name + "' has no entry under 'sources'");
   }
+}
+
+std::vector<RatedTargetSpec> read_targets(YamlMap& sensor) {
+  std::vector<RatedTargetSpec> targets;
+  for (const YamlNode& node : sensor.list("targets")) {
+    YamlMap map(node, sensor.faults(), "target");
+    read_fields(map, targets.emplace_back());
+    map.finish();
+  }
+  return targets;
 }
 
 /// Its element, amplifier, comparator and reports; what isn't there keeps its default.
@@ -286,6 +307,8 @@ bool misspells_range(const YamlNode& root) {
                                        "plane_m",
                                        "range_m",
                                        "response",
+                                       "targets",
+                                       "sensitivity",
                                        "optics",
                                        "facets",
                                        "clusters",
@@ -315,6 +338,8 @@ SensorModelSpec read_model(const YamlNode& root) {
   std::optional<double> range_m =  // of all facets or clusters that don't say their own
       map.optional_number("range_m", field_of<&ClusterSpec::range_m>().range);
   if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
+  model.targets = read_targets(map);
+  read_part(map, "sensitivity", model.sensitivity);
   read_part(map, "optics", model.optics);
   model.detector = read_detector(map);
   const std::array ways{"facets", "clusters", "dome"};
@@ -332,6 +357,7 @@ SensorModelSpec read_model(const YamlNode& root) {
     for (const YamlNode& node : map.has("layout") ? facets : std::vector<YamlNode>{})  // which says what facets need
       model.clusters.push_back(read_facet(node, law, faults));
   }
+  if (map.has("targets")) check_together(model, faults_of(map, "targets"));
   check_sources(map, root);
   map.finish();
   faults.throw_if_errors();

@@ -30,7 +30,8 @@ struct Provenance {
   std::string resolved_script;     ///< YAML, after overrides
   std::uint64_t seed = 0;
   std::uint32_t study_runs = 0;  ///< of the whole study
-  /// Sensors in order, and how each answers: "zones" or "analog". Follows from the inputs, and is told for a reader.
+  /// Sensors in order, and how each answers: "zones", "analog" or "analog, drawn: 1.27" (times as sensitive as rated).
+  /// Follows from the inputs, and is told for a reader.
   std::vector<std::pair<std::string, std::string>> responses{};
 };
 

@@ -139,7 +139,7 @@ TEST_CASE("what the lens' steps receive doesn't depend on the electronics, whose
       for (std::size_t s = 0; s < 5; ++s) {
         double watts = 0.0;
         for (std::size_t step = 0; step < n_steps; ++step) {
-          const double aperture_m2 = calibration.apertures_m2[pir::reference_facet(sensor, static_cast<int>(step) + 1)];
+          const double aperture_m2 = calibration.apertures_m2.at(static_cast<int>(step) + 1);
           watts += static_cast<double>(row[s * n_steps + step]) * sim::watts_per_step * aperture_m2 /
                    (1e-6 * sensor.optics.aperture_mm2);
         }

@@ -81,7 +81,12 @@ TEST_CASE("a study's word on the response goes before a sensor's own, which is a
   CHECK(responses(study(Response::zones).sensing) == std::pair(Response::zones, Response::zones));
   CHECK(responses(study(Response::analog).sensing) == std::pair(Response::analog, Response::analog));
   CHECK(responses_in_words(scene, {}) == "zones (HARD) and analog (EKMC1604111)");
-  CHECK(responses_in_words(scene, study(Response::analog).sensing) == "analog (EKMC1604111, HARD)");
+  SensingSpec analog = study(Response::analog).sensing;
+  CHECK(responses_in_words(scene, analog) == "analog (EKMC1604111, HARD)");
+  analog.units = Units::guaranteed;
+  CHECK(responses_in_words(scene, analog) == "analog (EKMC1604111, HARD, guaranteed units)");
+  analog.response = Response::zones;
+  CHECK(responses_in_words(scene, analog) == "zones (EKMC1604111, HARD)");
 }
 
 TEST_CASE("check tells the response, and that it was another one in 0.1 to scripts that don't say", "[sensor]") {

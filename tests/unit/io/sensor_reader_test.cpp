@@ -168,6 +168,18 @@ TEST_CASE("the low-profile lens misses the zones at its outer corners", "[sensor
   }
 }
 
+TEST_CASE("a facet whose outermost zone isn't one alone can't miss it", "[sensor]") {
+  const auto facet = [](const std::string& x_m) {
+    return "id: X\nplane_m: 2\nlayout: square\nsources: {plane_m: 'assumed: a', range_m: 'assumed: b', x_m: 'assumed: "
+           "a', "
+           "y_m: 'assumed: a', zone_side_m: 'assumed: a', missing: 'assumed: a'}\n"
+           "facets:\n  - {x_m: " +
+           x_m + ", y_m: 1, zone_side_m: 0.1, range_m: 3, missing: outer}\n";
+  };
+  CHECK(refusal_of(facet("0")).find("two are equally far off the axis") != std::string::npos);
+  CHECK(model_of(facet("0.5")).clusters.front().zones.size() == 3);
+}
+
 TEST_CASE("zones may be written out by their corners", "[sensor]") {
   const auto model = model_of(
       "id: X\nplane_m: 2\nrange_m: 4\nsources: {plane_m: 'assumed: a', range_m: "
@@ -324,6 +336,31 @@ TEST_CASE("a file's element, amplifier and comparator are read and what it leave
   CHECK(model.detector.report.blind_s == 0.0);
   CHECK(refusal_of(zones + "element: {thermal_s: 0.5}\n" + sources + "}\n") ==
         "f:7:11: error: 'thermal_s' has no entry under 'sources'");
+}
+
+TEST_CASE("a file's rated targets and sensitivity are read, and refused for lens steps that it hasn't", "[sensor]") {
+  const std::string zones =
+      "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n";
+  const std::string sources =
+      "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', mean: 'quoted: d', "
+      "sd: 'assumed: e', zones: 'quoted: f', width_m: 'quoted: g', lens_step: 'quoted: h'}\n";
+  const std::string sensitivity = "sensitivity: {mean: 1.36, sd: 0.1}\n";
+  const auto model = model_of(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}]\n");
+  REQUIRE(model.targets.size() == 1);
+  CHECK(model.targets[0].lens_step == 1);
+  CHECK(model.targets[0].zones == 1);
+  CHECK(model.targets[0].width_m == 0.2);
+  CHECK(model.targets[0].height_m == RatedTargetSpec{}.height_m);
+  CHECK(model.sensitivity.mean == 1.36);
+  CHECK(model.sensitivity.sd == 0.1);
+  CHECK(model_of(zones + sources).sensitivity.mean == 1.0);
+  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{lens_step: 2, zones: 1, width_m: 0.2}]\n") ==
+        "f:9:10: error: targets: no facet is of lens step 2");
+  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}, {zones: 2}]\n") ==
+        "f:9:10: error: targets: lens step 1 has two targets");
+  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{zones: 3, width_m: 0.2}]\n") != "");
+  CHECK(refusal_of(zones + "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c'}\n" +
+                   "targets: [{zones: 1}]\n") == "f:8:12: error: 'zones' has no entry under 'sources'");
 }
 
 TEST_CASE("detectors that could never work are refused with their place", "[sensor]") {
