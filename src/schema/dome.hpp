@@ -28,8 +28,7 @@ struct Fields<DomeSpec> {
   static constexpr NumberRange view_deg{.above = 0.0, .max = 170.0};  // wider, the plane has no room for the zones
   static constexpr NumberRange size_mm{.above = 0.0, .max = 100.0};
   static constexpr std::tuple all{
-      field("lenses", &S::lenses, IntegerRange{.min = 1, .max = 200},
-            "small lenses on the dome, of two zones each"),
+      field("lenses", &S::lenses, IntegerRange{.min = 1, .max = 200}, "small lenses on the dome, of two zones each"),
       field("wide_deg", &S::wide_deg, view_deg, "field of view from the left edge to the right"),
       field("tall_deg", &S::tall_deg, view_deg, "field of view from the lower edge to the upper; by default as wide"),
       field("focal_mm", &S::focal_mm, size_mm, "from the element to the dome"),
