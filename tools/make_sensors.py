@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes data/sensors/<lens>.yaml: Panasonic's lenses from data/sensors/lens_library.json, and a dual element behind a
-dome lens from the numbers below. Run it after the library or these numbers change."""
+"""Writes data/sensors/<model>.yaml: Panasonic's lenses from data/sensors/lens_library.json, modules and devices of
+other makes from the numbers below. Run it after the library or these numbers change."""
 import json
 import math
 import pathlib
@@ -36,10 +36,6 @@ def sources_of(name, lens):
             sources["missing"] = DRAWING + "three of the four zones are drawn"
     for key in dict.fromkeys(key for target in targets for key in target if key != "lens_step"):
         sources[key] = f"quoted: {CATALOGUE}, p. {page}"
-    sources["mean"] = ("inferred: " + CATALOGUE + ", p. 14: detection sensitivity 5.6 uW/cm2 on average, 7.6 at most, "
-                       "which is the guaranteed least: 7.6 / 5.6")
-    sources["sd"] = ("assumed: 7.6 uW/cm2 lies three standard deviations off the average, ln(7.6 / 5.6) / 3, so that "
-                     "nearly all units are 1 to 1.85 times as sensitive; range considered 0.07 to 0.15")
     sources["polarity"] = "assumed: neighbours on the quad differ; considered: checkerboard, all the same"
     return sources | detector_sources(PAPIRS_DETECTOR)
 
@@ -74,6 +70,12 @@ QUOTED_ANALOG = "quoted: data sheet of the analogue sibling EKMC26, "
 REFERENCE_DESIGNS = "Texas Instruments' reference designs TIDA-010027 (0.3 to 6.5 Hz) and TIDA-00489 (0.7 to 10.6 Hz)"
 # Keys of a detector, their values and where they come from; docs/physics/analog.md explains them.
 PAPIRS_DETECTOR = {
+    "sensitivity": {
+        "mean": (1.36, "inferred: " + CATALOGUE + ", p. 14: detection sensitivity 5.6 uW/cm2 on average, 7.6 at most, "
+                       "which is the guaranteed least: 7.6 / 5.6"),
+        "sd": (0.1, "assumed: 7.6 uW/cm2 lies three standard deviations off the average, ln(7.6 / 5.6) / 3, so that "
+                    "nearly all units are 1 to 1.85 times as sensitive; range considered 0.07 to 0.15"),
+    },
     "element": {
         "thermal_s": (0.15, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (1.0, "assumed: nobody says; range considered 0.3 to 3"),
@@ -156,89 +158,185 @@ def yaml_of(name, lens):
     if targets:
         lines += ["targets:"] + ["  - {" + ", ".join(f"{key}: {value}" for key, value in target.items()) + "}"
                                  for target in targets]
-    lines += ["sensitivity: {mean: 1.36, sd: 0.1}"]
     lines += ["polarity: checkerboard", *detector_lines(PAPIRS_DETECTOR), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources_of(name, lens).items()]
     lines += ["facets:"] + [facet_line(name, facet, lens) for facet in lens["facets"]]
     return "\n".join(lines) + "\n"
 
 
-# A dual element (two strips side by side, of opposite sign) behind a dome of small lenses, as in cheap modules.
-DOME_FOCAL_MM = 12.0
-DOME_ELEMENTS_MM = [((0.5, 1.5), 1), ((-1.5, -0.5), -1)]  # from, to along x, and the sign
-DOME_ELEMENT_HALF_HEIGHT_MM = 1.0
-DOME_RINGS = [(0.0, 1), (17.0, 6), (34.0, 10), (51.0, 12)]  # degrees off the axis, facets
-DUAL = "assumed: a generic dual element, two strips of 2 x 1 mm with a gap of 1 mm; "
-DOME = "assumed: a generic dome lens, focal length 12 mm (8 to 25), 29 facets in rings at 0, 17, 34 and 51 degrees; "
-MODULE = "assumed: as in cheap modules with a BISS0001 or a like circuit, 3.3 V; "
+# -- what other makes sell: a dual element behind a dome of small lenses, of which nobody has a drawing -------------
+
+CIRCUIT = "assumed: in volts of a module with 3.3 V, of which only the ratios matter; "
 DUAL_DETECTOR = {
     "element": {
         "thermal_s": (0.2, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (2.0, "assumed: nobody says; range considered 0.3 to 3"),
     },
     "amplifier": {
-        "low_hz": (0.7, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 0.3 to 0.7"),
-        "high_hz": (10.6, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 6.5 to 10.6"),
+        "low_hz": (0.3, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 0.2 to 0.7"),
+        "high_hz": (8.0, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 6.5 to 10.6"),
         "order": (2, "assumed: two equal amplifier stages, as in TIDA-00489; considered: 1 to 3"),
-        "noise_v_pp": (0.2, MODULE + "range considered 0.1 to 0.4"),
-        "offset_v": (1.65, MODULE + "half of the supply"),
-        "lowest_v": (0.1, MODULE + "the supply's rail"),
-        "highest_v": (3.2, MODULE + "the supply's rail"),
+        "noise_v_pp": (0.2, CIRCUIT + "range considered 0.1 to 0.4"),
+        "offset_v": (1.65, CIRCUIT + "half of the supply"),
+        "lowest_v": (0.1, CIRCUIT + "the supply's rail"),
+        "highest_v": (3.2, CIRCUIT + "the supply's rail"),
     },
     "comparator": {
-        "positive_v": (0.66, "inferred: 0.7 of the supply (BISS0001 data sheet), assumed to be 3.3 V, less the offset"),
-        "negative_v": (0.66, "inferred: the offset less 0.3 of the supply (BISS0001 data sheet), assumed to be 3.3 V"),
-        "pulse_count": (2, "assumed: to suppress lone disturbances; considered: 1 to 4"),
-        "pulse_window_s": (4.0, "assumed: range considered 2 to 8"),
-        "pulse_signs": ("alternating", "assumed: as digital detectors offer; considered: any, alternating"),
+        "positive_v": (0.66, "inferred: 0.7 of 3.3 V (BISS0001 data sheet) less the offset; "
+                             "assumed for circuits of another kind"),
+        "negative_v": (0.66, "inferred: the offset less 0.3 of 3.3 V (BISS0001 data sheet); "
+                             "assumed for circuits of another kind"),
     },
-    "report": {
-        "hold_s": (5.0, "assumed: adjustable on such modules, range considered 0.5 to 300"),
-        "blind_s": (2.5, "assumed: the BISS0001's inhibit time, set by two parts; range considered 0.5 to 5"),
+}
+ZIGBEE2MQTT = "https://www.zigbee2mqtt.io/devices/"
+ISSUES = "https://github.com/Koenkk/zigbee2mqtt/issues/"
+T1 = ("assumed: as its successor, the T1 (https://privatehomelab.com/aqara-motion-sensor-t1-rtcgq12lm-zigbee2mqtt-"
+      "home-assistant/); range considered ")
+HUB = "# That motion is over is said by the hub, after a clear time of its own, which is told to those who read its log"
+AQARA = {
+    "range_m": (7, T1 + "5 to 7 m"),
+    "dome": {"wide_deg": (170, T1 + "120 to 170"),
+             "tall_deg": (100, "assumed: nobody says; range considered 60 to 170")},
+}
+DEVICES = {
+    "HC-SR501": {
+        "description": "module with a BISS0001; generic dome",
+        "names": ["HW-416", "HW-416-B"],
+        "notes": ["# Its trimmers set the range, 3 to 7 m, and hold_s, 5 to 200 s (0.3 to 300 s told elsewhere). With",
+                  "# its jumper on L motion doesn't prolong the output: again_s is then as long as hold_s."],
+        "range_m": (7, "quoted: 3 to 7 m, https://www.radiolocman.com/op/device.html?di=602835&/HC-SR501"),
+        "dome": {"wide_deg": (110, "quoted: a cone of 110 degrees, same page; 100, 120 and 140 told elsewhere")},
+        "report": {"hold_s": (5, "quoted: 5 to 200 s by a trimmer, https://www.dkvolt.dk/produkt/pir-sensor-mini/"),
+                   "blind_s": (2.5, "quoted: 2.5 s, http://escol.com.my/Products/HC-SR501.htm; 3 s told elsewhere")},
+    },
+    "AM312": {
+        "description": "mini module; generic dome",
+        "names": ["AS312", "HC-SR312", "M5Stack Unit PIR"],
+        "range_m": (5, "quoted: 3 to 5 m, https://www.tagelabs.com/post/pir-sensors; 5 m with the AS312, "
+                       "https://docs.m5stack.com/en/unit/pir"),
+        "dome": {"lenses": (21, "assumed: nobody has a drawing; range considered 10 to 30"),
+                 "wide_deg": (100, "quoted: a cone of about 100 degrees, same pages")},
+        "report": {"hold_s": (2, "quoted: about 2 s, re-triggered, same pages; 2.3 to 3 s of the AM412"),
+                   "blind_s": (2, "quoted: about 2 s, same pages")},
+    },
+    "RTCGQ11LM": {
+        "description": "Aqara motion sensor; generic dome",
+        "names": ["Aqara Motion Sensor", "lumi.sensor_motion.aq2"],
+        "notes": [HUB, "# (hold_s of a log's map; the effect pulse_stretching): 90, 70 or 60 s."],
+        **AQARA,
+        "report": {"again_s": (60, "quoted: ignores motion for 60 s, " + ZIGBEE2MQTT + "RTCGQ11LM.html")},
+    },
+    "RTCGQ14LM": {
+        "description": "Aqara motion sensor P1; generic dome",
+        "names": ["Aqara Motion Sensor P1", "Aqara P1", "MS-S02", "lumi.motion.ac02"],
+        "notes": [HUB, "# (hold_s of a log's map; the effect pulse_stretching): again_s + 2 s in Zigbee2MQTT."],
+        **AQARA,
+        "report": {"again_s": (30, "quoted: 2 to 65535 s can be set (detection_interval, " + ZIGBEE2MQTT +
+                                   "RTCGQ14LM.html); 30 by default (deCONZ's description)")},
+    },
+    "SML001": {
+        "description": "Philips Hue motion sensor; generic dome",
+        "names": ["Philips Hue Motion Sensor", "Hue Motion Sensor", "9290012607"],
+        "range_m": (5, "quoted: about 5 m, https://www.lukeangel.com/blog/hue-motion-sensor-purpose-built-lighting-"
+                       "automation/"),
+        "dome": {"wide_deg": (100, "assumed: a review says 60 (same page); range considered 60 to 120"),
+                 "tall_deg": (90, "quoted: 90 degrees, same page")},
+        "report": {"hold_s": (10, "measured: by users, 10 s after motion, 60 s of motion end at 70 s, "
+                                  "https://github.com/Koenkk/zigbee-herdsman-converters/pull/184; can be set")},
+    },
+    "E1745": {
+        "description": "IKEA TRADFRI motion sensor; generic dome",
+        "names": ["IKEA TRADFRI Motion Sensor", "TRADFRI Motion Sensor"],
+        "notes": ["# Its predecessor, the E1525, has a dial for the time on."],
+        "range_m": (5, "assumed: nobody says; range considered 4 to 8 m"),
+        "dome": {"wide_deg": (120, "assumed: nobody says; range considered 100 to 140"),
+                 "tall_deg": (90, "assumed: nobody says; range considered 60 to 120")},
+        "report": {"hold_s": (180, "measured: by users, off 180 s after the last report, " + ZIGBEE2MQTT +
+                                   "E1525_E1745.html"),
+                   "again_s": (97, "measured: by users, again after 97 s (same page) or 100 s (" + ISSUES + "3468)")},
+    },
+    "SNZB-03": {
+        "description": "Sonoff motion sensor; generic dome",
+        "names": ["Sonoff SNZB-03", "eWeLink RHK09", "MS01"],
+        "range_m": (6, "quoted: 6 m, https://ixbt.com/live/chome/sonoff-snzb-03-byudzhetnyy-zigbee-datchik-dvizheniya-"
+                       "obzor-i-podklyuchenie-v-tuya-smart-i-home-assistant.html"),
+        "dome": {"wide_deg": (110, "quoted: 110 degrees, same page"),
+                 "tall_deg": (90, "assumed: nobody says; range considered 60 to 110")},
+        "report": {"hold_s": (60, "quoted: off after a minute without motion, the maker in " + ISSUES + "4874")},
     },
 }
 
 
-def dome_zone(facet, left, right):
-    """Corners, on the plane 1 m ahead, of what a strip of the element sees through the middle of a facet."""
-    corners = []
-    for x, y in ((left, -1), (right, -1), (right, 1), (left, 1)):
-        # A point of the element looks through the facet's middle: x to the right, y up, forward.
-        ray = (facet[0] - x, facet[1] - y * DOME_ELEMENT_HALF_HEIGHT_MM, facet[2])
-        corners.append(f"[{ray[0] / ray[2] + 0.0:.4f}, {ray[1] / ray[2] + 0.0:.4f}]")
-    return "[" + ", ".join(corners) + "]"
+def device_yaml(name, device):
+    numbers = {"dome": device["dome"], **DUAL_DETECTOR, "report": device["report"]}
+    sources = {"range_m": device["range_m"][1], **detector_sources(numbers)}
+    lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", *device.get("notes", []),
+             f"id: {name}", f"description: {device['description']}", f"names: [{', '.join(device['names'])}]",
+             f"range_m: {device['range_m'][0]}", *detector_lines(numbers), "sources:"]
+    return "\n".join(lines + [f'  {key}: "{text}"' for key, text in sources.items()]) + "\n"
 
 
-def dome_cluster(off_axis_deg, turn_deg):
-    off_axis, turn = math.radians(off_axis_deg), math.radians(turn_deg)
-    sideways = DOME_FOCAL_MM * math.sin(off_axis)
-    facet = (sideways * math.cos(turn), sideways * math.sin(turn), DOME_FOCAL_MM * math.cos(off_axis))
-    return ["  - zones:"] + [f"      - {{corners_m: {dome_zone(facet, *strip)}, polarity: {sign}}}"
-                             for strip, sign in DOME_ELEMENTS_MM]
+# -- Panasonic's wide lens, and its parts under other names ---------------------------------------------------------
+
+WIDE_COLUMNS_M = [0.0, 0.275, -0.275, 0.53, -0.53, 0.815, -0.815, 1.165, -1.165, 1.615, -1.615]
+# (x, y), half of the distance of opposite zones, lens step
+WIDE_FACETS_M = [((x, y), 0.128, 1) for y in (-0.033, -0.285) for x in WIDE_COLUMNS_M] + [
+    ((side * x, -0.02), spacing, 2) for x, spacing in ((2.275, 0.15), (3.525, 0.22)) for side in (1, -1)]
+WIDE_DRAWING = "measured: the catalogue's picture of the zones at 1 m, whose pixels are 4 cm; centres to about 1 cm"
 
 
-def dome_yaml():
-    sources = {"plane_m": "assumed: any plane will do", "range_m": "assumed: range considered 3 to 7 m",
-               "corners_m": DOME + "each strip seen from the middle of the facet",
-               "polarity": DUAL + "wired in opposition"}
-    sources |= detector_sources(DUAL_DETECTOR)
-    lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", "id: DUAL_DOME",
-             "description: a generic dual element behind a dome lens, 58 zones; all assumed", "plane_m: 1.0",
-             "range_m: 5.0", *detector_lines(DUAL_DETECTOR), "sources:"]
+def wide_cluster(middle, spacing, step):
+    """Four diamonds, the images of the turned quad: 0.6 mm squares, 1.0 mm from centre to centre."""
+    yield f"  - lens_step: {step}\n    zones:"
+    for i, (right, up) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
+        x, y = middle[0] + spacing * right, middle[1] + spacing * up
+        corners = [f"[{x + 0.6 * spacing * a:.4f}, {y + 0.6 * spacing * b:.4f}]"
+                   for a, b in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+        yield f"      - {{corners_m: [{', '.join(corners)}], polarity: {1 if i % 2 == 0 else -1}}}"
+
+
+def wide_yaml():
+    sources = {"plane_m": "quoted: the plane on which the catalogue draws the zones",
+               "range_m": f"quoted: {CATALOGUE}, p. 11: up to 5 m, drawn as an arc",
+               "lens_step": "quoted: area A, then area B to its sides",
+               "contrast_k": f"quoted: {CATALOGUE}, p. 11: 8 K in area B",
+               "corners_m": WIDE_DRAWING + "; sizes inferred from the quad (" + QUAD + ")",
+               "polarity": "assumed: neighbours on the quad differ; considered: checkerboard, all the same"}
+    sources |= detector_sources(PAPIRS_DETECTOR)
+    lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", "id: EKMC1605111",
+             "description: Panasonic PaPIRs EKM 05 horizontally wide, 104 zones", "plane_m: 1.0", "range_m: 5.0",
+             "targets:", "  - {lens_step: 2, contrast_k: 8}", *detector_lines(PAPIRS_DETECTOR), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources.items()] + ["clusters:"]
-    for off_axis_deg, facets in DOME_RINGS:
-        for i in range(facets):
-            lines += dome_cluster(off_axis_deg, (i + 0.5) * 360.0 / facets)
+    for facet in WIDE_FACETS_M:
+        lines += wide_cluster(*facet)
     return "\n".join(lines) + "\n"
 
 
+NAMES = {"EKMC1603111": ["Everything Presence One", "Everything Presence Pro", "EP1"]}
+EKMB = "quoted: timing chart of the 1 uA type, "
+
+
+def with_names(name, text):
+    names = f"names: [{', '.join(NAMES[name])}]\n" if name in NAMES else ""
+    return text.replace("\nplane_m:", f"\n{names}plane_m:", 1)
+
+
+def battery_yaml(text):
+    """The type of 1 uA, which holds and then is blind, of the model with the same lens that follows its comparator."""
+    text = text.replace("EKMC1601111", "EKMB1101111").replace("zones\n", "zones, for batteries (1 uA)\n", 1)
+    text = text.replace("\nsources:", "\nreport: {hold_s: 2.6, blind_s: 1.3}\nsources:", 1)
+    sources = f'  hold_s: "{EKMB}about 2.6 s"\n  blind_s: "{EKMB}about 1.3 s of mask"\n'
+    return text.replace("\nfacets:", "\n" + sources + "facets:", 1)
+
+
 def main():
-    (SENSORS / "DUAL_DOME.yaml").write_text(dome_yaml())
+    texts = {name: device_yaml(name, device) for name, device in DEVICES.items()}
+    texts["EKMC1605111"] = wide_yaml()
     library = json.loads((SENSORS / "lens_library.json").read_text())
-    for name, lens in library.items():
-        if name.startswith("_"):
-            continue
-        (SENSORS / f"{name}.yaml").write_text(yaml_of(name, lens))
+    texts |= {name: with_names(name, yaml_of(name, lens)) for name, lens in library.items() if name[0] != "_"}
+    texts["EKMB1101111"] = battery_yaml(texts["EKMC1601111"])
+    for name, text in texts.items():
+        (SENSORS / f"{name}.yaml").write_text(text)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ namespace pirsim {
 [[nodiscard]] double unit_sensitivity(const SceneSpec& scene, Units units, std::uint64_t seed, std::uint32_t sensor);
 
 /// For a reader, with the models of sensors that give it, and the units if they aren't the usual ones: "zones
-/// (DUAL_DOME) and analog (EKMC1604111, guaranteed units)".
+/// (HC-SR501) and analog (EKMC1604111, guaranteed units)".
 [[nodiscard]] std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing);
 
 /// A warning for each sensor model that hard zones leave numbers of unused: those that differ from the defaults, which

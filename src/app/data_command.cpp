@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
@@ -20,7 +21,17 @@ std::vector<io::ShippedFile> all_files() {
                                  "; PIRSIM_DATA_DIR can name its folder");
 }
 
-/// Each folder, and below it the names of its files.
+/// What a file of sensors describes; nothing of another kind, nor of a faulty file, whose faults are its users' affair.
+std::optional<SensorModelSpec> model_in(const io::ShippedFile& file) {
+  if (file.kind != io::DataKind::sensors) return std::nullopt;
+  try {
+    return io::read_sensor_model(file.path);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+/// Each folder, and below it the names of its files; of sensors also what they are, and in which products.
 void list_files() {
   fs::path folder;
   for (const io::ShippedFile& file : all_files()) {
@@ -28,7 +39,11 @@ void list_files() {
       std::cout << (folder.empty() ? "" : "\n") << file.path.parent_path().string() << '\n';
       folder = file.path.parent_path();
     }
-    std::cout << "  " << file.path.filename().string() << '\n';
+    std::cout << "  " << file.path.filename().string();
+    if (const auto model = model_in(file)) {
+      std::cout << "  " << model->description << (model->names.empty() ? "" : " (" + joined(model->names, ", ") + ')');
+    }
+    std::cout << '\n';
   }
 }
 
@@ -39,6 +54,16 @@ void tell_path(const std::string& name) {
     if (names.back() != name) continue;
     std::cout << file.path.string() << '\n';
     return;
+  }
+  const auto is_meant = [&](const std::string& known) { return bare_name(known) == bare_name(name); };
+  for (const io::ShippedFile& file : all_files()) {
+    const auto model = model_in(file);
+    if (!model) continue;
+    if (is_meant(file.path.stem().string()) || std::ranges::any_of(model->names, is_meant)) {
+      std::cout << file.path.string() << '\n';
+      return;
+    }
+    names.insert(names.end(), model->names.begin(), model->names.end());
   }
   throw Error(ErrorCode::usage, "data: '" + name + "' isn't shipped" + near_or_all(name, names));
 }
@@ -51,6 +76,7 @@ void add_data_command(CLI::App& app) {
   pirsim data                                                      where they are, and their names
   pirsim check --scene meeting_room.gltf --script studyA.yaml      a shipped name will do for a file that isn't here
   cp "$(pirsim data studyA.yaml)" .                                one to begin with
+  pirsim data "everything presence one"                            the file of the sensor that a product has
 )x");
   const auto name = std::make_shared<std::string>();
   command.add_option("name", *name, "where this one is")->option_text("NAME");

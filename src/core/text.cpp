@@ -172,6 +172,14 @@ std::string near_or_all(std::string_view name, const std::vector<std::string>& k
   return text;
 }
 
+std::string bare_name(std::string_view name) {
+  std::string bare;
+  for (const char c : name) {
+    if (is_word(c)) bare += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return bare;
+}
+
 std::string counted(std::size_t n, const std::string& name, const std::string& plural) {
   return std::to_string(n) + ' ' + (n == 1 ? name : plural.empty() ? name + 's' : plural);
 }

@@ -42,6 +42,9 @@ inline constexpr std::string_view begin_of_list = "; there are ";
 /// ` (did you mean 'X'?)`, or `; there are A, B` if none is near; of very many only the first; `; there are none`.
 [[nodiscard]] std::string near_or_all(std::string_view name, const std::vector<std::string>& known);
 
+/// Lower-case letters and digits of a name alone: what people mean who spell it otherwise, "HC SR501" or "hc-sr501".
+[[nodiscard]] std::string bare_name(std::string_view name);
+
 /// "1 seat", "5 seats"; plural: where it isn't the name and an s.
 [[nodiscard]] std::string counted(std::size_t n, const std::string& name, const std::string& plural = {});
 

@@ -205,20 +205,28 @@ void age(std::int32_t& ticks) noexcept {
 }  // namespace
 
 Comparator::Comparator(const ComparatorSpec& spec, const ReportSpec& report, double tick_s) : spec_(spec) {
-  if (!(spec.positive_v > 0.0 && spec.negative_v > 0.0 && report.hold_s >= 0.0 && report.blind_s >= 0.0 &&
-        spec.pulse_window_s >= 0.0 && spec.pulse_count >= 1 && spec.pulse_count <= most_pulses)) {
+  if (!(spec.positive_v > 0.0 && spec.negative_v > 0.0 && report.hold_s >= 0.0 && report.again_s >= 0.0 &&
+        report.blind_s >= 0.0 && spec.pulse_window_s >= 0.0 && spec.pulse_count >= 1 &&
+        spec.pulse_count <= most_pulses)) {
     throw Error(ErrorCode::usage, "comparator: expected positive thresholds, times of at least 0 and 1 to 8 pulses");
   }
   pulse_window_ = ticks(spec.pulse_window_s, tick_s);
   hold_ = ticks(report.hold_s, tick_s);
+  again_ = ticks(report.again_s, tick_s);
   blind_ = ticks(report.blind_s, tick_s);
+}
+
+void Comparator::count_motion(State& state) const noexcept {
+  state.on = true;
+  state.hold_left = hold_;
+  state.deaf_left = again_;
 }
 
 void Comparator::count_pulse(State& state) const noexcept {
   if (spec_.pulse_signs == PulseSigns::alternating && state.pulses > 0 && state.side == state.last_pulse_side) return;
   state.last_pulse_side = state.side;
   state.pulse_age[state.pulses++] = 0;
-  state.on = state.pulses >= spec_.pulse_count;
+  if (state.pulses >= spec_.pulse_count) count_motion(state);
 }
 
 void Comparator::advance(State& state, double volts) const noexcept {
@@ -228,22 +236,24 @@ void Comparator::advance(State& state, double volts) const noexcept {
 void Comparator::advance_to(State& state, std::int8_t side) const noexcept {
   const std::int8_t before = state.side;
   state.side = side;
-  if (state.blind_left > 0) {
-    --state.blind_left;
+  const bool is_deaf = state.deaf_left > 0;
+  if (is_deaf) --state.deaf_left;
+  if (state.on) {
+    if (side != 0 && !is_deaf && (again_ == 0 || state.hold_left > 0)) return count_motion(state);
+    if (state.hold_left > 0) {
+      --state.hold_left;
+    } else {
+      state = {.side = side, .deaf_left = std::max(state.deaf_left, blind_)};
+    }
     return;
   }
+  if (is_deaf) return;
   for (int i = 0; i < state.pulses; ++i) age(state.pulse_age[i]);
   while (state.pulses > 0 && state.pulse_age[0] > pulse_window_) {
     std::copy(state.pulse_age + 1, state.pulse_age + state.pulses, state.pulse_age);
     state.pulse_age[--state.pulses] = 0;
   }
-  state.since_outside = state.side != 0 ? 0 : std::min(state.since_outside + 1, hold_ + 1);
-  if (state.on) {
-    if (state.since_outside <= hold_) return;
-    state = {.side = state.side, .since_outside = state.since_outside, .blind_left = blind_};
-  } else if (state.side != 0 && state.side != before) {
-    count_pulse(state);
-  }
+  if (side != 0 && side != before) count_pulse(state);
 }
 
 AnalogCircuit::AnalogCircuit(const DetectorSpec& spec, double volts_per_watt, double tick_s)

@@ -50,13 +50,15 @@ class AnalogFilter {
 
 // From a signal to an output that is on or off.
 
-/// A window comparator that counts pulses, with hold and blind time; time in ticks.
+/// A window comparator that counts pulses, and what its device reports; time in ticks.
 ///
 /// A *pulse* begins with the tick at which the signal is outside the window, having been inside or on the other side
-/// the tick before. `pulse_count` pulses that begin within `pulse_window_s` switch the output on with the last of them.
-/// It goes off with the first tick at which the signal has been inside for `hold_s`; then, for `blind_s`, no pulse
-/// counts and those counted before are forgotten. With one pulse, no hold and no blind time the output is on just while
-/// the signal is outside.
+/// the tick before. While the output is off, *motion* counts with the last of `pulse_count` pulses that begin within
+/// `pulse_window_s`; while it is on, with every tick outside. When motion counts the output is on, from then for
+/// `hold_s`. During `again_s` after it counted no motion counts, nor during `blind_s` after the output went off; pulses
+/// then are forgotten. With `again_s`, motion that begins no pulse counts only while some of the hold is left, so that
+/// the output goes off though motion goes on if `again_s` is at least `hold_s`. With one pulse and no times the output
+/// is on just while the signal is outside.
 class Comparator {
  public:
   static constexpr int most_pulses = 8;
@@ -67,8 +69,8 @@ class Comparator {
     bool on = false;
     std::int8_t pulses = 0;                    ///< counted
     std::int32_t pulse_age[most_pulses] = {};  ///< ticks since each began, the oldest first
-    std::int32_t since_outside = 0;            ///< ticks, no more than one beyond the hold time
-    std::int32_t blind_left = 0;               ///< ticks
+    std::int32_t hold_left = 0;                ///< ticks that the output stays on without more motion
+    std::int32_t deaf_left = 0;                ///< ticks during which nothing counts
     bool operator==(const State&) const = default;
   };
 
@@ -81,10 +83,11 @@ class Comparator {
   void advance_to(State& state, std::int8_t side) const noexcept;
 
  private:
+  void count_motion(State& state) const noexcept;
   void count_pulse(State& state) const noexcept;
 
   ComparatorSpec spec_;
-  std::int32_t pulse_window_ = 0, hold_ = 0, blind_ = 0;  ///< ticks
+  std::int32_t pulse_window_ = 0, hold_ = 0, again_ = 0, blind_ = 0;  ///< ticks
 };
 
 /// Immutable, shared by all sensors of one model.

@@ -85,6 +85,7 @@ void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& fault
   faults.together(model.detector.amplifier, detector.field("amplifier"));
   faults.fields(model.detector.comparator, detector.field("comparator"));
   faults.together(model.detector.comparator, detector.field("comparator"));
+  faults.fields(model.detector.report, detector.field("report"));
   faults.together(model.detector, detector);
 }
 

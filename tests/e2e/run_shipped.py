@@ -28,7 +28,7 @@ def names_of(listing):
     names, kind = {}, None
     for line in filter(None, listing.splitlines()):
         if line.startswith("  "):
-            names[kind].add(line.strip())
+            names[kind].add(line.split()[0])
         else:
             kind = pathlib.Path(line).name
             names.setdefault(kind, set())
@@ -50,6 +50,15 @@ class Shipped(unittest.TestCase):
                 path = pathlib.Path(pirsim("data", name, cwd=self.folder).strip())
                 self.assertEqual(path.read_bytes(), (DATA / kind / name).read_bytes())
         self.assertIn("did you mean 'studyA.yaml'?", pirsim("data", "StudyA.yaml", code=2))
+
+    def test_sensors_are_listed_with_their_products_and_found_by_them(self):
+        listed = {line.split()[0]: line for line in pirsim("data").splitlines() if line.startswith("  ")}
+        self.assertIn("long distance, 92 zones (Everything Presence One, Everything Presence Pro, EP1)",
+                      listed["EKMC1603111.yaml"])
+        for name, file in (("everything presence one", "EKMC1603111"), ("EP-1", "EKMC1603111"), ("hc-sr501", "HC-SR501"),
+                           ("HC SR501", "HC-SR501"), ("philips hue motion sensor", "SML001"), ("AM312.yaml", "AM312")):
+            self.assertEqual(pathlib.Path(pirsim("data", name).strip()).name, f"{file}.yaml")
+        self.assertIn("did you mean 'Everything Presence Pro'?", pirsim("data", "everything presense pro", code=2))
 
     def test_a_name_gives_the_rows_of_the_file(self):
         by_name = pirsim("--scene", "meeting_room.gltf", "--script", "studyA.yaml", *SHORT, cwd=self.folder)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "schema/dome.hpp"
 #include "schema/fields.hpp"
 
 namespace pirsim {
@@ -206,6 +207,7 @@ int main() {
   std::cout << "{\n";
   print<ScriptedAction>("_Action");
   print_all(static_cast<SpecsOfPython*>(nullptr));
+  print<DomeSpec>("dome");
   print<XShapesSpec>("x_shapes");
   print<CoverageSpec>("coverage");
   print<PlacementSearchSpec>("search");

@@ -250,7 +250,9 @@ class SensorSearch {
 
   /// Nothing for a name that isn't known. Throws Error (io, input) for a faulty file.
   [[nodiscard]] std::optional<FoundSensor> find(const std::string& model) const;
-  [[nodiscard]] std::vector<std::string> names() const;               ///< of all models, sorted, each once
+  [[nodiscard]] std::vector<std::string> names() const;  ///< of all models, sorted, each once
+  /// The model that a product carries, by its name (SensorModelSpec::names) or the model's, however it is spelt; or "".
+  [[nodiscard]] std::string carrier(const std::string& product) const;
   [[nodiscard]] std::string unknown(const std::string& model) const;  ///< what to say of one that isn't found
 
  private:

@@ -1,6 +1,7 @@
 #include "pirsim/io.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -8,6 +9,7 @@
 #include "core/text.hpp"
 #include "io/read/reader_parts.hpp"
 #include "io/read/yaml_map.hpp"
+#include "schema/dome.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -86,6 +88,14 @@ void read_cluster_numbers(YamlMap& map, const std::optional<double>& range_m, Cl
   read_numbers(map, cluster);
 }
 
+void check_corners(const ClusterSpec& cluster, const std::string& what, const Where& where, Diagnostics& faults) {
+  if (faults.has_errors()) return;
+  for (const ZoneSpec& zone : cluster.zones) {
+    const std::string fault = corners_fault(zone);
+    if (!fault.empty()) faults.error(where, what + ": the corners of its zones: " + fault);
+  }
+}
+
 ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& faults) {
   YamlMap map(node, faults, "facet");
   ClusterSpec cluster;
@@ -107,12 +117,7 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
                  "facet: missing: no single zone is the outermost: two are equally far off the axis");
   }
   cluster.zones = zones_of(quad, law.polarity, missing);
-  if (!faults.has_errors()) {
-    for (const ZoneSpec& zone : cluster.zones) {
-      const std::string fault = corners_fault(zone);
-      if (!fault.empty()) faults.error(node.where(), "facet: the corners of its zones: " + fault);
-    }
-  }
+  check_corners(cluster, "facet", node.where(), faults);
   map.finish();
   return cluster;
 }
@@ -159,6 +164,18 @@ ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& rang
   return cluster;
 }
 
+std::vector<ClusterSpec> read_dome(YamlMap& sensor, double plane_m, double range_m) {
+  DomeSpec dome;
+  const YamlNode node = *sensor.child("dome");
+  YamlMap map(node, sensor.faults(), "dome");
+  read_fields(map, dome);
+  map.finish();
+  if (sensor.faults().has_errors()) return {};
+  std::vector<ClusterSpec> clusters = clusters_of(dome, plane_m, range_m);
+  for (const ClusterSpec& cluster : clusters) check_corners(cluster, "dome", node.where(), sensor.faults());
+  return clusters;
+}
+
 template <typename Spec>
 void add_keys(std::vector<std::string>& keys) {
   each_field<Spec>([&](const auto& field) { keys.emplace_back(field.name); });
@@ -178,6 +195,7 @@ const std::vector<std::string>& sourced_keys() {
                                  "pitch_m",
                                  "missing",
                                  "corners_m"};
+    add_keys<DomeSpec>(all);
     add_keys<OpticsSpec>(all);
     add_keys<SensitivitySpec>(all);
     each_field<RatedTargetSpec>([&](const auto& field) {
@@ -250,8 +268,14 @@ DetectorSpec read_detector(YamlMap& sensor) {
   read_part(sensor, "element", detector.element);
   read_part(sensor, "amplifier", detector.amplifier,
             [&](YamlMap& map) { check_together(detector.amplifier, faults_of(map, "amplifier")); });
-  read_part(sensor, "comparator", detector.comparator,
-            [&](YamlMap& map) { check_together(detector.comparator, faults_of(map, "comparator")); });
+  read_part(sensor, "comparator", detector.comparator, [&](YamlMap& map) {
+    check_together(detector.comparator, faults_of(map, "comparator"));
+    each_field<ReportSpec>([&](const auto& field) {
+      if (map.child(field.name))
+        map.faults().error(map.where(field.name),
+                           "comparator: '" + std::string(field.name) + "' stands under 'report' beside 'comparator'");
+    });
+  });
   read_part(sensor, "report", detector.report);
   // A signal that saturates before a threshold would never be noticed.
   check_together(detector, faults_of(sensor, "comparator"));
@@ -288,6 +312,9 @@ bool misspells_range(const YamlNode& root) {
                                        "optics",
                                        "facets",
                                        "clusters",
+                                       "dome",
+                                       "names",
+                                       "report",
                                        "layout",
                                        "polarity",
                                        "sources",
@@ -306,7 +333,7 @@ SensorModelSpec read_model(const YamlNode& root) {
   SensorModelSpec model;
   model.id = map.required_text("id");
   model.description = map.prose("description");
-  map.require("plane_m");
+  if (!map.has("dome")) map.require("plane_m");
   read_fields(map, model);
   std::optional<double> range_m =  // of all facets or clusters that don't say their own
       map.optional_number("range_m", field_of<&ClusterSpec::range_m>().range);
@@ -315,10 +342,13 @@ SensorModelSpec read_model(const YamlNode& root) {
   read_part(map, "sensitivity", model.sensitivity);
   read_part(map, "optics", model.optics);
   model.detector = read_detector(map);
-  if (map.has("facets") == map.has("clusters")) {
-    faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
-  }
-  if (map.has("clusters")) {
+  const std::array ways{"facets", "clusters", "dome"};
+  if (std::ranges::count_if(ways, [&](const char* way) { return map.has(way); }) != 1)
+    faults.error(map.where(), "sensor: expected one of 'facets', 'clusters' and 'dome'");
+  if (map.has("dome")) {
+    if (!range_m) map.require("range_m");
+    model.clusters = read_dome(map, model.plane_m, range_m.value_or(1.0));
+  } else if (map.has("clusters")) {
     for (const YamlNode& node : map.required_list("clusters"))
       model.clusters.push_back(read_cluster(node, range_m, faults));
   } else if (map.has("facets")) {
@@ -399,8 +429,23 @@ std::vector<std::string> SensorSearch::names() const {
   return {names.begin(), names.end()};
 }
 
+std::string SensorSearch::carrier(const std::string& product) const {
+  for (const std::string& name : names()) {
+    try {
+      const std::optional<FoundSensor> found = find(name);
+      const auto is_product = [&](const std::string& known) { return bare_name(known) == bare_name(product); };
+      if (is_product(name) || (found && std::ranges::any_of(found->model.names, is_product))) return name;
+    } catch (const Error&) {
+      continue;  // a file's faults are told to those who ask for it
+    }
+  }
+  return {};
+}
+
 std::string SensorSearch::unknown(const std::string& model) const {
   const auto told = [](const fs::path& folder) { return "'" + folder.lexically_normal().string() + "'"; };
+  const std::string known = carrier(model);
+  if (!known.empty()) return "sensor model '" + model + "' is called '" + known + "' here";
   std::string searched;
   for (const fs::path& folder : folders_) {
     if (searched.find(told(folder)) == std::string::npos) searched += (searched.empty() ? "" : ", ") + told(folder);

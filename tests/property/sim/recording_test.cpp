@@ -127,6 +127,7 @@ void draw_electronics(DetectorSpec& detector, Stream& stream) {
   detector.comparator.pulse_count = 1 + static_cast<int>(stream.index(2));
   detector.comparator.pulse_window_s = 2.0;
   detector.report.hold_s = stream.index(2) == 0 ? 0.0 : 1.5;
+  detector.report.again_s = stream.index(2) == 0 ? 0.0 : 1.0;
   detector.report.blind_s = stream.index(2) == 0 ? 0.0 : 0.5;
 }
 

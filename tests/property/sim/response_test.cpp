@@ -61,6 +61,7 @@ const std::map<std::string, Change>& changes() {
       {"pulse_window_s", [](SensorModelSpec& m) { m.detector.comparator.pulse_window_s = 4.0; }},
       {"pulse_signs", [](SensorModelSpec& m) { m.detector.comparator.pulse_signs = PulseSigns::alternating; }},
       {"hold_s", [](SensorModelSpec& m) { m.detector.report.hold_s = 2.3; }},
+      {"again_s", [](SensorModelSpec& m) { m.detector.report.again_s = 5.0; }},
       {"blind_s", [](SensorModelSpec& m) { m.detector.report.blind_s = 5.0; }}};
   return all;
 }
@@ -122,7 +123,7 @@ TEST_CASE("each number of a sensor's circuit and optics changes hard zones' rows
     if (changed) obeyed.insert(key);
     CHECK(idle_sensor_keys(scene, study(Response::analog).sensing).empty());
   }
-  CHECK(obeyed == std::set<std::string>{"pulse_count", "pulse_window_s", "hold_s", "blind_s"});
+  CHECK(obeyed == std::set<std::string>{"pulse_count", "pulse_window_s", "hold_s", "again_s", "blind_s"});
 }
 
 TEST_CASE("a sensor with the defaults of its family tells nothing, and its zones answer at once", "[sensor]") {

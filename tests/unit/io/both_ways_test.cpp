@@ -67,6 +67,7 @@ std::string text_of(const SensorModelSpec& model) {
   part("element", model.detector.element);
   part("amplifier", model.detector.amplifier);
   part("comparator", model.detector.comparator);
+  part("report", model.detector.report);
   text << "sources:\n";
   const auto source = [&](const std::string& key, const auto&...) { text << "  " << key << ": 'assumed: a test'\n"; };
   for (const char* key : {"plane_m", "range_m", "lens_step", "polarity", "corners_m"}) source(key);
@@ -74,6 +75,7 @@ std::string text_of(const SensorModelSpec& model) {
   each_number(model.detector.element, source);
   each_number(model.detector.amplifier, source);
   each_number(model.detector.comparator, source);
+  each_number(model.detector.report, source);
   text << "clusters:\n";
   for (const ClusterSpec& cluster : model.clusters) {
     text << "- range_m: " << cluster.range_m << "\n  lens_step: " << cluster.lens_step << "\n  zones:\n";
@@ -242,6 +244,7 @@ TEST_CASE("a number out of its range is refused by file and by object", "[both-w
   n += sensor_numbers<ElementSpec>([](SensorModelSpec& m) -> ElementSpec& { return m.detector.element; });
   n += sensor_numbers<AmplifierSpec>([](SensorModelSpec& m) -> AmplifierSpec& { return m.detector.amplifier; });
   n += sensor_numbers<ComparatorSpec>([](SensorModelSpec& m) -> ComparatorSpec& { return m.detector.comparator; });
+  n += sensor_numbers<ReportSpec>([](SensorModelSpec& m) -> ReportSpec& { return m.detector.report; });
   CHECK(n > 200);
 }
 

@@ -125,10 +125,11 @@ TEST_CASE("the pattern of EKMC1604111 has the printed edges and steps", "[sensor
 }
 
 TEST_CASE("every lens file has the catalogue's number of zones, symmetric about its middle", "[sensor]") {
-  const std::map<std::string, std::size_t> zones{{"EKMC1601111", 64},  {"EKMC1603111", 92}, {"EKMC1604111", 68},
-                                                 {"EKMC1606111", 128}, {"EKMC1607111", 32}, {"EKMC1691111", 112},
-                                                 {"EKMC1693111", 84},  {"AMN31111", 64},    {"AMN32111", 104},
-                                                 {"AMN33111", 24},     {"AMN34111", 80},    {"DUAL_DOME", 58}};
+  const std::map<std::string, std::size_t> zones{
+      {"EKMC1601111", 64},  {"EKMC1603111", 92},  {"EKMC1604111", 68}, {"EKMC1606111", 128}, {"EKMC1607111", 32},
+      {"EKMC1691111", 112}, {"EKMC1693111", 84},  {"AMN31111", 64},    {"AMN32111", 104},    {"AMN33111", 24},
+      {"AMN34111", 80},     {"EKMC1605111", 104}, {"EKMB1101111", 64}, {"HC-SR501", 58},     {"AM312", 42},
+      {"RTCGQ11LM", 58},    {"RTCGQ14LM", 58},    {"SML001", 58},      {"E1745", 58},        {"SNZB-03", 58}};
   const auto is_lens = [](const auto& entry) { return entry.path().extension() == ".yaml"; };
   const auto files = std::filesystem::directory_iterator(sensors);
   CHECK(std::count_if(begin(files), end(files), is_lens) == static_cast<std::ptrdiff_t>(zones.size()));
@@ -192,11 +193,94 @@ TEST_CASE("zones may be written out by their corners", "[sensor]") {
   CHECK(model.clusters[0].zones[1].corners[2] == Vec2(3, 1));
 }
 
+namespace {
+
+std::string dome_file(const std::string& dome) {
+  std::string text = "id: X\nrange_m: 4\ndome: {" + dome + "}\nsources: {range_m: 'quoted: a'";
+  for (const char* key : {"lenses", "wide_deg", "tall_deg", "focal_mm", "strip_width_mm", "gap_mm"}) {
+    if (dome.find(key) != std::string::npos) text += std::string(", ") + key + ": 'quoted: a'";
+  }
+  return text + "}\n";
+}
+
+}  // namespace
+
+TEST_CASE("a single lens of a dome throws the element's strips straight ahead, mirrored", "[sensor]") {
+  const auto model = model_of(dome_file("lenses: 1, wide_deg: 90, focal_mm: 10"));
+  REQUIRE(model.clusters.size() == 1);
+  CHECK(model.plane_m == 1.0);
+  CHECK(model.clusters[0].range_m == 4.0);
+  REQUIRE(model.clusters[0].zones.size() == 2);
+  for (const ZoneSpec& zone : model.clusters[0].zones) {
+    // The strips lie 0.5 to 1.5 mm beside the middle and are 2 mm high; what lies right looks left.
+    for (const Vec2& corner : zone.corners) {
+      const double out = -zone.polarity * corner.x;
+      CHECK((std::abs(out - 0.05) < 1e-12 || std::abs(out - 0.15) < 1e-12));
+      CHECK(std::abs(std::abs(corner.y) - 0.1) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a dome's zones end where its field of view does and left is as right", "[sensor]") {
+  for (const int lenses : {3, 8, 21, 29, 30, 64}) {
+    for (const double wide_deg : {60.0, 110.0, 170.0}) {
+      const auto model = model_of(
+          dome_file("lenses: " + std::to_string(lenses) + ", tall_deg: 50, wide_deg: " + std::to_string(wide_deg)));
+      INFO(lenses << " lenses, " << wide_deg << " degrees");
+      CHECK(model.clusters.size() == static_cast<std::size_t>(lenses));
+      double left = 0.0, right = 0.0, top_deg = 0.0;
+      for (const ClusterSpec& cluster : model.clusters) {
+        for (const ZoneSpec& zone : cluster.zones) {
+          for (const Vec2& corner : zone.corners) {
+            left = std::min(left, corner.x);
+            right = std::max(right, corner.x);
+            top_deg = std::max(top_deg, std::atan(corner.y / std::hypot(1.0, corner.x)) * 180.0 / M_PI);
+          }
+        }
+        const auto is_mirrored = [&](const ClusterSpec& other) {
+          return glm::length(other.centre - Vec2(-cluster.centre.x, cluster.centre.y)) < 1e-9;
+        };
+        CHECK(std::ranges::any_of(model.clusters, is_mirrored));
+      }
+      const double edge = std::tan(wide_deg * M_PI / 360.0);
+      CHECK(std::abs(right / edge - 1.0) < 1e-9);
+      CHECK(std::abs(left / edge + 1.0) < 1e-9);
+      CHECK(top_deg < 25.5);
+      if (lenses > 8) CHECK(top_deg > 23.0);
+    }
+  }
+}
+
+TEST_CASE("a dome's numbers need sources, and make sense", "[sensor]") {
+  CHECK(model_of(dome_file("")).clusters.size() == 29);
+  CHECK(refusal_of(dome_file("lenses: 0, wide_deg: 90")).find("dome: lenses: expected") != std::string::npos);
+  CHECK(refusal_of(dome_file("lenses: 9, wide_deg: 180")).find("dome: wide_deg: expected") != std::string::npos);
+  CHECK(refusal_of("id: X\nrange_m: 4\ndome: {lenses: 9, wide_deg: 90}\n"
+                   "sources: {range_m: 'quoted: a', lenses: 'quoted: a'}\n") ==
+        "f:3:19: error: 'wide_deg' has no entry under 'sources'");
+}
+
+TEST_CASE("products are known by what they carry, however their names are spelt", "[sensor]") {
+  const auto refusal = [](const std::string& model) -> std::string {
+    try {
+      static_cast<void>(io::find_sensor_model(model, {}));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK(refusal("HC-SR501").empty());
+  CHECK_THAT(refusal("ep1"), contains("sensor model 'ep1' is called 'EKMC1603111' here"));
+  CHECK_THAT(refusal("everything-presence one"), contains("is called 'EKMC1603111' here"));
+  CHECK_THAT(refusal("hc sr501"), contains("is called 'HC-SR501' here"));
+  CHECK_THAT(refusal("EKMC1604112"), contains("did you mean 'EKMC1604111'?"));
+}
+
 TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
   const std::string head =
       "id: X\nplane_m: 2\nsources: {plane_m: 'assumed: a', range_m: 'assumed: b', x_m: 'assumed: a', "
       "y_m: 'assumed: a', corners_m: 'assumed: c', zone_side_m: 'assumed: a', pitch_m: 'assumed: a'}\n";
-  CHECK(refusal_of(head) == "f:1:1: error: sensor: expected either 'facets' or 'clusters'");
+  CHECK(refusal_of(head) == "f:1:1: error: sensor: expected one of 'facets', 'clusters' and 'dome'");
   CHECK(refusal_of(head + "layout: square\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: 1, pitch_m: 2, range: 3}\n") ==
         "f:6:50: error: facet: unknown key 'range' (did you mean 'range_m'?)");
   CHECK(refusal_of(head + "layout: squere\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: -1, pitch_m: 2, range_m: 3}\n") ==
@@ -293,6 +377,9 @@ TEST_CASE("detectors that could never work are refused with their place", "[sens
   CHECK(refusal_of(zones + "comparator: {positive_v: 0.8}\n") ==
         "f:8:13: error: comparator: the output saturates before it reaches a threshold");
   CHECK(refusal_of(zones + "report: {hold: 2}\n").find("hold_s") != std::string::npos);
+  CHECK(refusal_of(zones + "comparator: {hold_s: 2}\n") ==
+        "f:8:22: error: comparator: 'hold_s' stands under 'report' beside 'comparator'\n"
+        "f:8:14: error: 'hold_s' has no entry under 'sources'");
 }
 
 TEST_CASE("a lens too small for directions is refused", "[sensor]") {

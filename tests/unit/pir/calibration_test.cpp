@@ -94,7 +94,7 @@ TEST_CASE("a smaller target at the same distance makes the calibrated gain large
 }
 
 TEST_CASE("a plate that crosses one zone, smaller than it, brings its own solid angle times aperture and contrast") {
-  for (const char* id : {"EKMC1604111", "EKMC1601111", "AMN32111", "DUAL_DOME"}) {
+  for (const char* id : {"EKMC1604111", "EKMC1601111", "AMN32111", "HC-SR501"}) {
     SensorModelSpec model = model_named(id);
     model.optics.blur_deg = 0.0;
     flatten(model.detector);
@@ -202,7 +202,7 @@ TEST_CASE("the wall lens reaches 1.4 times as far for 8 K as its data sheet says
 }
 
 TEST_CASE("a sensor without power at its rated distance can't be calibrated") {
-  SensorModelSpec model = model_named("DUAL_DOME");
+  SensorModelSpec model = model_named("HC-SR501");
   for (ClusterSpec& cluster : model.clusters) {
     for (ZoneSpec& zone : cluster.zones) zone.corners = {Vec2(0.0), Vec2(0.0), Vec2(0.0), Vec2(0.0)};
   }

@@ -81,7 +81,7 @@ TEST_CASE("a facet below the axis is crossed to the left and right, one on a dia
     CHECK(crossings(square, facet, 2).size() == 8);   // two rows, two columns
     CHECK(crossings(square, facet, 1).size() == 16);  // four zones in four ways
   }
-  const SensorModelSpec dual = io::read_sensor_model(test::data_dir() / "sensors/DUAL_DOME.yaml");
+  const SensorModelSpec dual = io::read_sensor_model(test::data_dir() / "sensors/HC-SR501.yaml");
   CHECK(crossings(dual, 0, 2).size() == 2);  // its strips are side by side
   CHECK(crossings(dual, 0, 1).size() == 8);
 }
