@@ -126,9 +126,7 @@ void Motion::walk_from(const Route& route, double from_s) {
 
 StepStyle Motion::walking_style() const noexcept {
   const double scale = humanoid_.measures().stature_m / reference_stature_m;
-  return {.step = manner_.step_m,
-          .lift_m = walking_lift_m * scale,
-          .pitch_per_lift = walking_pitch_per_lift / scale};
+  return {.step = manner_.step_m, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale};
 }
 
 void Motion::follow(const Route& route, std::span<const double> at_m, std::span<const double> headings) {
