@@ -168,6 +168,10 @@ def yaml_of(name, lens):
 
 CIRCUIT = "assumed: in volts of a module with 3.3 V, of which only the ratios matter; "
 DUAL_DETECTOR = {
+    "sensitivity": {
+        "mean": (1.0, "assumed: sheets of such devices tell what one usually gets; range considered 0.7 to 2"),
+        "sd": (0.2, "assumed: twice that of PaPIRs, since nobody promises a least; range considered 0.1 to 0.4"),
+    },
     "element": {
         "thermal_s": (0.2, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (2.0, "assumed: nobody says; range considered 0.3 to 3"),
