@@ -82,8 +82,10 @@ TEST_CASE("a sensor's gain scales its signal and nobody else's, however it came 
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   SceneSpec louder = scene;
   louder.sensors[1].gain = 1.5;
-  const Model plain = compile(scene, analog_study());
-  const Model alone = compile(louder, analog_study()), beside = compile(louder, analog_study(), {.like = &plain});
+  ScriptSpec study = analog_study();
+  study.sensing.units = Units::guaranteed;  // a product of two factors would round otherwise than one of three
+  const Model plain = compile(scene, study);
+  const Model alone = compile(louder, study), beside = compile(louder, study, {.like = &plain});
   for (const Model* model : {&alone, &beside}) {
     for (std::size_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
       const auto& steps = analog_of(plain).sensors()[sensor]->watts_per_step;
