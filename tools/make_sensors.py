@@ -37,7 +37,7 @@ def sources_of(name, lens):
     for key in dict.fromkeys(key for target in targets for key in target if key != "lens_step"):
         sources[key] = f"quoted: {CATALOGUE}, p. {page}"
     sources["polarity"] = "assumed: neighbours on the quad differ; considered: checkerboard, all the same"
-    return sources | detector_sources(PAPIRS_DETECTOR)
+    return sources | detector_sources(papirs_detector(name))
 
 
 CATALOGUE = "Panasonic's catalogue of PIR motion sensors (2020)"
@@ -70,12 +70,6 @@ QUOTED_ANALOG = "quoted: data sheet of the analogue sibling EKMC26, "
 REFERENCE_DESIGNS = "Texas Instruments' reference designs TIDA-010027 (0.3 to 6.5 Hz) and TIDA-00489 (0.7 to 10.6 Hz)"
 # Keys of a detector, their values and where they come from; docs/physics/analog.md explains them.
 PAPIRS_DETECTOR = {
-    "sensitivity": {
-        "mean": (1.36, "inferred: " + CATALOGUE + ", p. 14: detection sensitivity 5.6 uW/cm2 on average, 7.6 at most, "
-                       "which is the guaranteed least: 7.6 / 5.6"),
-        "sd": (0.1, "assumed: 7.6 uW/cm2 lies three standard deviations off the average, ln(7.6 / 5.6) / 3, so that "
-                    "nearly all units are 1 to 1.85 times as sensitive; range considered 0.07 to 0.15"),
-    },
     "element": {
         "thermal_s": (0.15, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (1.0, "assumed: nobody says; range considered 0.3 to 3"),
@@ -94,6 +88,23 @@ PAPIRS_DETECTOR = {
         "negative_v": (0.45, "assumed: half of what the output can swing; range considered 0.2 to 0.6"),
     },
 }
+
+
+# How many thresholds of the mean unit the rated plate brings in absolute terms, as the geometric mean of two estimates
+# over the lens's facets: docs/physics/analog.md#units. Of lenses whose facets aren't drawn, as of the wall lens.
+ABSOLUTE = {"EKMC1601111": 5.4, "EKMB1101111": 5.4, "EKMC1603111": 3.5, "EKMC1604111": 3.5, "EKMC1606111": 1.5,
+            "EKMC1691111": 3.4, "EKMC1693111": 6.8, "AMN31111": 6.0, "AMN32111": 3.6, "AMN33111": 6.0, "AMN34111": 4.2}
+
+
+def papirs_detector(name):
+    how = "inferred: " if name in ABSOLUTE else "assumed: as of the wall lens, whose facets are drawn; "
+    mean = ABSOLUTE.get(name, 3.5)
+    return {"sensitivity": {
+        "mean": (mean, how + "the average unit answers to 5.6 uW/cm2 without a lens (" + CATALOGUE + ", p. 14), and "
+                 f"the rated plate brings more through this one; range considered {mean / 2:.2g} to {mean * 2:.2g}"),
+        "sd": (0.1, "assumed: 7.6 uW/cm2, the most, lies three standard deviations off the average, ln(7.6 / 5.6) / 3; "
+                    "range considered 0.07 to 0.15"),
+    }} | PAPIRS_DETECTOR
 
 
 def detector_sources(detector):
@@ -158,7 +169,7 @@ def yaml_of(name, lens):
     if targets:
         lines += ["targets:"] + ["  - {" + ", ".join(f"{key}: {value}" for key, value in target.items()) + "}"
                                  for target in targets]
-    lines += ["polarity: checkerboard", *detector_lines(PAPIRS_DETECTOR), "sources:"]
+    lines += ["polarity: checkerboard", *detector_lines(papirs_detector(name)), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources_of(name, lens).items()]
     lines += ["facets:"] + [facet_line(name, facet, lens) for facet in lens["facets"]]
     return "\n".join(lines) + "\n"
@@ -168,10 +179,6 @@ def yaml_of(name, lens):
 
 CIRCUIT = "assumed: in volts of a module with 3.3 V, of which only the ratios matter; "
 DUAL_DETECTOR = {
-    "sensitivity": {
-        "mean": (1.0, "assumed: sheets of such devices tell what one usually gets; range considered 0.7 to 2"),
-        "sd": (0.2, "assumed: twice that of PaPIRs, since nobody promises a least; range considered 0.1 to 0.4"),
-    },
     "element": {
         "thermal_s": (0.2, "assumed: nobody says; range considered 0.05 to 1"),
         "electrical_s": (2.0, "assumed: nobody says; range considered 0.3 to 3"),
@@ -192,6 +199,15 @@ DUAL_DETECTOR = {
                              "assumed for circuits of another kind"),
     },
 }
+# docs/physics/analog.md#units
+SENSITIVITY = {
+    "HC-SR501": (2.6, "inferred: LHi778 (4.2 kV/W), two stages of 101, thresholds 0.66 V off: the rated plate at 7 m "
+                      "brings 2.6 times that; range considered 1 to 7"),
+    "AM312": (2.9, "inferred: digital elements answer to 90 to 100 uV (BS412's sheet), which the rated plate at 5 m "
+                   "brings 2.9 times; range considered 0.75 to 9"),
+}
+UNKNOWN = (2.6, "assumed: nobody tells element, threshold and lens; as of the HC-SR501, range considered 1 to 7")
+UNITS_SD = (0.2, "assumed: twice that of PaPIRs, since nobody promises a least; range considered 0.1 to 0.4")
 ZIGBEE2MQTT = "https://www.zigbee2mqtt.io/devices/"
 ISSUES = "https://github.com/Koenkk/zigbee2mqtt/issues/"
 T1 = ("assumed: as its successor, the T1 (https://privatehomelab.com/aqara-motion-sensor-t1-rtcgq12lm-zigbee2mqtt-"
@@ -272,7 +288,8 @@ DEVICES = {
 
 
 def device_yaml(name, device):
-    numbers = {"dome": device["dome"], **DUAL_DETECTOR, "report": device["report"]}
+    sensitivity = {"mean": SENSITIVITY.get(name, UNKNOWN), "sd": UNITS_SD}
+    numbers = {"dome": device["dome"], "sensitivity": sensitivity, **DUAL_DETECTOR, "report": device["report"]}
     sources = {"range_m": device["range_m"][1], **detector_sources(numbers)}
     lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", *device.get("notes", []),
              f"id: {name}", f"description: {device['description']}", f"names: [{', '.join(device['names'])}]",
@@ -306,10 +323,11 @@ def wide_yaml():
                "contrast_k": f"quoted: {CATALOGUE}, p. 11: 8 K in area B",
                "corners_m": WIDE_DRAWING + "; sizes inferred from the quad (" + QUAD + ")",
                "polarity": "assumed: neighbours on the quad differ; considered: checkerboard, all the same"}
-    sources |= detector_sources(PAPIRS_DETECTOR)
+    detector = papirs_detector("EKMC1605111")
+    sources |= detector_sources(detector)
     lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", "id: EKMC1605111",
              "description: Panasonic PaPIRs EKM 05 horizontally wide, 104 zones", "plane_m: 1.0", "range_m: 5.0",
-             "targets:", "  - {lens_step: 2, contrast_k: 8}", *detector_lines(PAPIRS_DETECTOR), "sources:"]
+             "targets:", "  - {lens_step: 2, contrast_k: 8}", *detector_lines(detector), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources.items()] + ["clusters:"]
     for facet in WIDE_FACETS_M:
         lines += wide_cluster(*facet)
