@@ -141,14 +141,10 @@ std::vector<std::size_t> reference_facets(const SensorModelSpec& model, int lens
   return facets;
 }
 
-namespace {
-
 DetectorSpec without_noise(DetectorSpec spec) {
   spec.amplifier.noise_v_pp = 0.0;
   return spec;
 }
-
-}  // namespace
 
 RatedStep::RatedStep(const SensorModelSpec& model, int lens_step, int rays_per_zone)
     : comparator_(model.detector.comparator), filter_(without_noise(model.detector), 1.0, tick_s) {

@@ -71,6 +71,9 @@ class RatedStep {
   TargetPass rated_;
 };
 
+/// The same electronics, silent.
+[[nodiscard]] DetectorSpec without_noise(DetectorSpec spec);
+
 struct Calibration {
   double volts_per_watt = 0.0;         ///< `fitted`, unless the sensor's data give it
   std::map<int, double> apertures_m2;  ///< by lens step; the first one's is data, the others' are `fitted`

@@ -87,16 +87,11 @@ BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
 
 namespace {
 
-DetectorSpec without_noise(DetectorSpec spec) {
-  spec.amplifier.noise_v_pp = 0.0;
-  return spec;
-}
-
 CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
   const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
   CalibratedSensor sensor{
-      model, tick_s, 1.0, {model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}, {}};
+      model, tick_s, 1.0, {model.detector, gain, tick_s}, {pir::without_noise(model.detector), gain, tick_s}, {}, {}};
   for (const auto& [step, aperture_m2] : calibration.apertures_m2)
     sensor.rated_watts_per_step.push_back(aperture_m2 / pir::aperture_m2(model.optics) * watts_per_step);
   return sensor;
