@@ -111,10 +111,11 @@ def main():
         page = (data.parent / "docs/formats/coverage.md").read_text(encoding="utf-8")
         named = re.findall(r"`(\w+)`", re.search(r"\| `sensing` \|.*?\|(.*)\|", page)[1])
         changed = {"rays_per_zone": 1, "change_per": "beam", "response": "analog", "reader": "free_running",
-                   "tick_rate_hz": 25, "window_s": 2, "ambient_c": 30, "analog_rays_per_zone": 9}
+                   "tick_rate_hz": 25, "window_s": 2, "units": "guaranteed", "ambient_c": 30,
+                   "analog_rays_per_zone": 9}
         assert set(named) == set(changed), named
         for key, value in changed.items():
-            analog = ["--set", "sensing.response=analog"] if key in ("ambient_c", "analog_rays_per_zone") else []
+            analog = ["--set", "sensing.response=analog"] if key in ("units", "ambient_c", "analog_rays_per_zone") else []
             maps = []
             for more in (analog, [*analog, "--set", f"sensing.{key}={value}"]):
                 call("coverage", study_b, "--set", "spacing_m=0.5", "--set", "duration_s=6", *more, "-o", folder / "key")

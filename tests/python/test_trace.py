@@ -72,7 +72,7 @@ def test_a_trace_serves_other_electronics(study, response):
     other = pirsim.compile(altered, plain.script)
     emitted = trace.emit(model=other)
     assert same(emitted, pirsim.run(other))
-    assert emitted.bits.sum() > trace.emit().bits.sum()
+    assert not np.array_equal(emitted.bits, trace.emit().bits)
     noise = trace.emit(model=other, seed=100)
     assert np.array_equal(noise.bits, emitted.bits) == (response == "zones") and noise.seed == 100
 
