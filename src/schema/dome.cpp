@@ -52,7 +52,7 @@ std::vector<OffAxis> facets_of(const DomeSpec& dome) {
 std::vector<ClusterSpec> clusters_of(const DomeSpec& dome, double plane_m, double range_m) {
   std::vector<ClusterSpec> clusters;
   for (const OffAxis& facet : facets_of(dome)) {
-    const double off_axis = radians(std::hypot(facet.right_deg, facet.up_deg));
+    const double off_axis = radians(std::sqrt(facet.right_deg * facet.right_deg + facet.up_deg * facet.up_deg));
     const double turn = std::atan2(facet.up_deg, facet.right_deg);
     const Vec3 middle = dome.focal_mm * Vec3(std::sin(off_axis) * std::cos(turn), std::sin(off_axis) * std::sin(turn),
                                              std::cos(off_axis));

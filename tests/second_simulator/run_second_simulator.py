@@ -51,7 +51,7 @@ name: Short mornings
 rooms:
   - {count: 3, width_m: 5, depth_m: 4, seats: 2,
      sensors: [{mount: corner, count: 2, height_m: [2.2, 2.4], tilt_deg: [15, 45],
-                model: [EKMC1601111, EKMC1691111, EKMC1693111]}]}
+                model: [EKMC1603111]}]}
 days: 2
 schedule: {from: "08:50", to: "08:58", arrival: {mean: "08:52", sd_min: 1}, staff: [{count: 2}]}
 effects: [{false_triggers: {rate_per_s: 0.5}}]
