@@ -32,12 +32,6 @@ std::optional<std::size_t> area_before(const Frame& world_from_sensor, const std
 
 }  // namespace
 
-std::vector<std::string> ids_of(const std::vector<AreaSpec>& areas) {
-  std::vector<std::string> ids;
-  for (const AreaSpec& area : areas) ids.push_back(area.id);
-  return ids;
-}
-
 Areas::Areas(const SceneSpec& scene) : parts_(scene.floor, outlines_of(scene.areas)), names_(ids_of(scene.areas)) {
   if (parts_.has_rest()) names_.emplace_back(elsewhere);
   for (const SensorSpec& sensor : scene.sensors) {

@@ -49,7 +49,12 @@ class Areas {
   std::vector<std::optional<std::size_t>> of_sensors_;
 };
 
-/// The ids of a scene's areas.
-[[nodiscard]] std::vector<std::string> ids_of(const std::vector<AreaSpec>& areas);
+/// The ids of a scene's areas, seats or entrances.
+template <typename Spec>
+[[nodiscard]] std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
+  std::vector<std::string> names;
+  for (const Spec& spec : specs) names.push_back(spec.id);
+  return names;
+}
 
 }  // namespace pirsim

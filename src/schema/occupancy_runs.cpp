@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/text.hpp"
+#include "schema/areas.hpp"
 
 namespace pirsim {
 namespace {
@@ -24,21 +24,6 @@ std::vector<double> moments_of(const OccupancySpec& occupancy) {
   }
   std::ranges::sort(moments);
   return moments;
-}
-
-void require_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
-                   const std::string& kind, const std::string& scene, const Where& where, Diagnostics& faults) {
-  for (const std::string& name : wanted) {
-    if (std::ranges::find(known, name) != known.end()) continue;
-    faults.error(where, "occupancy: " + kind + " '" + name + "' is not in " + scene + near_or_all(name, known));
-  }
-}
-
-template <typename Spec>
-std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
-  std::vector<std::string> names;
-  for (const Spec& spec : specs) names.push_back(spec.id);
-  return names;
 }
 
 }  // namespace
@@ -104,30 +89,6 @@ std::vector<std::string> seats_of(const OccupancySpec& occupancy, const SceneSpe
 }
 std::vector<std::string> entrances_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
   return occupancy.entrances.empty() ? ids_of(scene.entrances) : occupancy.entrances;
-}
-
-std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene, std::uint64_t seed) {
-  Diagnostics faults;
-  require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
-  require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
-  if (occupancy.counts) {
-    std::vector<std::string> areas;
-    for (const AreaCountsSpec& area : occupancy.counts->areas) areas.push_back(area.area);
-    require_names(areas, ids_of(scene.areas), "area", scene.name, occupancy.where, faults);
-  }
-  if (scene.entrances.empty() && !occupancy.positions)
-    faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
-  faults.throw_if_errors();
-  std::vector<ScheduledPerson> people;
-  if (!occupancy.counts) return people;
-  const std::vector<int>& counts = occupancy.counts->people;
-  const int most = counts.empty() ? 0 : *std::ranges::max_element(counts);
-  for (int i = 0; i < occupancy.persons.value_or(most); ++i) {
-    people.push_back(
-        {SchedulePart::occupant, Role::staff, "",
-         drawn_body("occupant_" + std::to_string(i + 1), occupancy.style, seed, static_cast<std::uint32_t>(i))});
-  }
-  return people;
 }
 
 }  // namespace pirsim

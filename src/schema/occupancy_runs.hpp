@@ -1,4 +1,4 @@
-// What a run of a script with an occupancy covers, and whom it adds.
+// What a run of a script with an occupancy covers.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,6 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 #include "schema/clock.hpp"
-#include "schema/schedule_people.hpp"
 
 namespace pirsim {
 
@@ -39,11 +38,6 @@ struct DataSpan {
 /// The file of its data as the script names it, or "".
 [[nodiscard]] const std::string& data_file(const OccupancySpec& occupancy) noexcept;
 [[nodiscard]] std::string& data_file(OccupancySpec& occupancy) noexcept;
-
-/// The people of a count: as many as are ever there at once, or as the occupancy says. Their actions are drawn for each
-/// run. Throws Error(input) for seats and entrances that the scene lacks.
-[[nodiscard]] std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene,
-                                                     std::uint64_t seed);
 
 /// The names that are asked for, or all that the scene has.
 [[nodiscard]] std::vector<std::string> seats_of(const OccupancySpec& occupancy, const SceneSpec& scene);

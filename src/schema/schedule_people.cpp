@@ -12,6 +12,7 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
 #include "schema/areas.hpp"
+#include "schema/occupancy_runs.hpp"
 #include "schema/words.hpp"
 
 namespace pirsim {
@@ -45,6 +46,14 @@ std::set<std::string> set_aside(const MeetingsSpec& meetings, const SceneSpec& s
     if (is_in(seat, meetings.area, scene)) seats.insert(seat.id);
   }
   return seats;
+}
+
+void require_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                   const std::string& kind, const std::string& scene, const Where& where, Diagnostics& faults) {
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    faults.error(where, "occupancy: " + kind + " '" + name + "' is not in " + scene + near_or_all(name, known));
+  }
 }
 
 /// Who owns which desk: seats that are asked for, then those that nobody has.
@@ -275,6 +284,30 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
     }
   }
   if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
+  return people;
+}
+
+std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene, std::uint64_t seed) {
+  Diagnostics faults;
+  require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
+  require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
+  if (occupancy.counts) {
+    std::vector<std::string> areas;
+    for (const AreaCountsSpec& area : occupancy.counts->areas) areas.push_back(area.area);
+    require_names(areas, ids_of(scene.areas), "area", scene.name, occupancy.where, faults);
+  }
+  if (scene.entrances.empty() && !occupancy.positions)
+    faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
+  faults.throw_if_errors();
+  std::vector<ScheduledPerson> people;
+  if (!occupancy.counts) return people;
+  const std::vector<int>& counts = occupancy.counts->people;
+  const int most = counts.empty() ? 0 : *std::ranges::max_element(counts);
+  for (int i = 0; i < occupancy.persons.value_or(most); ++i) {
+    people.push_back(
+        {SchedulePart::occupant, Role::staff, "",
+         drawn_body("occupant_" + std::to_string(i + 1), occupancy.style, seed, static_cast<std::uint32_t>(i))});
+  }
   return people;
 }
 

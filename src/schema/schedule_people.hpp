@@ -1,4 +1,4 @@
-// The people that a schedule adds to a trial.
+// The people that a schedule or an occupancy adds to a trial.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +29,11 @@ struct ScheduledPerson {
 /// Staff in their order, then guests of meetings, then who cleans. Bodies are drawn from the study's seed and are the
 /// same on all days. Throws Error(input) for more staff than seats, and for seats and entrances that the scene lacks.
 [[nodiscard]] std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene,
+                                                     std::uint64_t seed);
+
+/// The people of a count: as many as are ever there at once, or as the occupancy says. Their actions are drawn for each
+/// run. Throws Error(input) for seats and entrances that the scene lacks.
+[[nodiscard]] std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene,
                                                      std::uint64_t seed);
 
 /// Where the schedule's room-th meetings are held: the seats that are asked for, or those of the area that are nobody's
