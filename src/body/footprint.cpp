@@ -100,7 +100,7 @@ bool contains(const Footprint& footprint, const Vec2& point) noexcept {
   return !(left && right);
 }
 
-double distance(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noexcept {
+double between_edges(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noexcept {
   const bool crossing =
       cross(b - a, c - a) * cross(b - a, d - a) < 0.0 && cross(d - c, a - c) * cross(d - c, b - c) < 0.0;
   if (crossing) return 0.0;
@@ -147,11 +147,11 @@ double distance(const Vec2& point, const Footprint& footprint) noexcept {
 
 double distance(const Vec2& a, const Vec2& b, const Footprint& footprint) noexcept {
   if (contains(footprint, a)) return 0.0;
-  if (!footprint.covers_area) return distance(a, b, footprint.corners[0], footprint.corners[1]);
+  if (!footprint.covers_area) return between_edges(a, b, footprint.corners[0], footprint.corners[1]);
   double nearest = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < footprint.n_corners; ++i) {
     const Vec2& next = footprint.corners[(i + 1) % footprint.n_corners];
-    nearest = std::min(nearest, distance(a, b, footprint.corners[i], next));
+    nearest = std::min(nearest, between_edges(a, b, footprint.corners[i], next));
   }
   return nearest;
 }

@@ -14,7 +14,6 @@
 namespace pirsim::body {
 namespace {
 
-constexpr double cell_m = WalkableFloor::cell_m;
 constexpr double lead_m = 0.5;  ///< how far a start or goal may be from a walkable cell
 
 bool finite(const Vec2& p) noexcept { return std::isfinite(p.x) && std::isfinite(p.y); }
@@ -59,11 +58,12 @@ StepGrid WalkableFloor::Impl::grid_around(std::span<const Disc> others) const {
       return disc_distance(cells->centre(cell), cells->centre(left.neighbour(cell, direction)), disc) <
              clearance_m - rounding_m;
     };
-    cells->each_near(disc.centre - disc.radius_m, disc.centre + disc.radius_m, clearance_m + cell_m, [&](int cell) {
-      for (int direction = 0; direction < n_directions; ++direction) {
-        if (left.is_open(cell, direction) && too_near(cell, direction)) left.close(cell, direction);
-      }
-    });
+    cells->each_near(disc.centre - disc.radius_m, disc.centre + disc.radius_m, clearance_m + WalkableFloor::cell_m,
+                     [&](int cell) {
+                       for (int direction = 0; direction < n_directions; ++direction) {
+                         if (left.is_open(cell, direction) && too_near(cell, direction)) left.close(cell, direction);
+                       }
+                     });
   }
   return left;
 }

@@ -11,10 +11,10 @@ namespace pirsim::rt {
 namespace {
 
 void bound_solid(const RTCBoundsFunctionArguments* arguments) {
-  constexpr float padding = 1e-3F;  // metres; far more than the ray tests' rounding
+  constexpr float slack = 1e-3F;  // metres; far more than the ray tests' rounding
   const auto [lower, upper] = bounds(*static_cast<const PosedShape*>(arguments->geometryUserPtr));
-  *arguments->bounds_o = {lower.x - padding, lower.y - padding, lower.z - padding, 0.0F,
-                          upper.x + padding, upper.y + padding, upper.z + padding, 0.0F};
+  *arguments->bounds_o = {lower.x - slack, lower.y - slack, lower.z - slack, 0.0F,
+                          upper.x + slack, upper.y + slack, upper.z + slack, 0.0F};
 }
 
 void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {

@@ -10,7 +10,7 @@ namespace pirsim::sim {
 namespace {
 
 constexpr double look_ahead_m = 1.2;  ///< as for others
-constexpr double step_m = 0.05;
+constexpr double way_step_m = 0.05;
 constexpr double unlimited_m = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -29,18 +29,18 @@ Pedestrian::WayToDoor Pedestrian::way_to_door(const DoorsSeen& doors, std::size_
   bool leads_through = false;
   double enters_m = farthest_m, through_m = farthest_m;
   Vec2 here = route_->position(walked_m_);
-  const double end_m = std::min(farthest_m, route_->length_m() - walked_m_ + step_m);
-  for (double ahead_m = 0.0; ahead_m < end_m && !leads_through; ahead_m += step_m) {
+  const double end_m = std::min(farthest_m, route_->length_m() - walked_m_ + way_step_m);
+  for (double ahead_m = 0.0; ahead_m < end_m && !leads_through; ahead_m += way_step_m) {
     const double off_m = leaf.distance_to_sweep_m(here);
     const bool is_outside = off_m >= keep_m;
     if (is_outside && enters_m < farthest_m) break;  // past it
-    if (off_m > keep_m + 2.0 * step_m) {             // comes no nearer than this on a way so long
-      ahead_m += step_m * (std::floor((off_m - keep_m) / step_m) - 1.0);
-      here = route_->position(walked_m_ + ahead_m + step_m);
+    if (off_m > keep_m + 2.0 * way_step_m) {         // comes no nearer than this on a way so long
+      ahead_m += way_step_m * (std::floor((off_m - keep_m) / way_step_m) - 1.0);
+      here = route_->position(walked_m_ + ahead_m + way_step_m);
       continue;
     }
-    if (!is_outside) enters_m = std::min(enters_m, std::max(0.0, ahead_m - step_m));
-    const Vec2 next = route_->position(walked_m_ + ahead_m + step_m);
+    if (!is_outside) enters_m = std::min(enters_m, std::max(0.0, ahead_m - way_step_m));
+    const Vec2 next = route_->position(walked_m_ + ahead_m + way_step_m);
     leads_through = leaf.leads_through(here, next);
     if (leads_through) through_m = ahead_m;
     here = next;

@@ -11,7 +11,7 @@ namespace {
 constexpr double sitting_m = 0.25;  ///< assumed: the same from pelvis and knees (0.2-0.3)
 constexpr double walking_m =
     0.95;  ///< assumed: who walks needs a way to stop before a leaf that begins to turn (0.8-1.2)
-constexpr double patience_s = 20.0;  ///< then a leaf opens past whoever stands there, as walkers pass each other
+constexpr double leaf_patience_s = 20.0;  ///< then a leaf opens past whoever stands there, as walkers pass each other
 
 bool leads_by(const DoorLeaf& leaf, const DoorUser& user) {
   return user.gait == DoorUser::Gait::led && leaf.distance_to_sweep_m(user.now) < walking_m;
@@ -72,8 +72,8 @@ void Doors::advance_one(const CompiledStudy& study, std::size_t i, std::int64_t 
   if (!is_wanted && step == leaf.open_step() && (door.shut_behind || tick >= door.open_until)) door.goal = Goal::shut;
   const LeafStep goal = door.goal == Goal::open ? leaf.open_step() : LeafStep{0};
   if (step == goal) return;
-  const bool is_forced =
-      is_wanted && (is_led || tick - *door.wanted_since >= std::llround(patience_s * study.sensing().tick_rate_hz));
+  const bool is_forced = is_wanted && (is_led || tick - *door.wanted_since >=
+                                                     std::llround(leaf_patience_s * study.sensing().tick_rate_hz));
   if (!is_forced && !is_clear(leaf, i, users)) {
     barred_[i] = door.goal == Goal::open ? 1 : 0;
     return;
