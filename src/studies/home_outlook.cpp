@@ -33,11 +33,11 @@ void add_day(ExpectedResident& resident, const std::vector<sim::HomeStay>& stays
 }
 
 /// "23:10", also after midnight.
-std::string clock(double seconds) { return clock_text(0, seconds).substr(11, 5); }
+std::string time_of_day_text(double seconds) { return clock_text(0, seconds).substr(11, 5); }
 
 void print_resident(std::ostream& out, const ExpectedResident& resident) {
   out << "  " << std::left << std::setw(12) << resident.id << std::right << " bed " << resident.bed << "; up "
-      << clock(resident.mean_up_s) << '-' << clock(resident.mean_to_bed_s) << "; hours a day:" << std::fixed
+      << time_of_day_text(resident.mean_up_s) << '-' << time_of_day_text(resident.mean_to_bed_s) << "; hours a day:" << std::fixed
       << std::setprecision(1);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < resident.mean_s.size(); ++i)
