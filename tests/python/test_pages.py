@@ -100,13 +100,14 @@ def test_the_pictures_of_the_page_on_python_take_ten_lines(source):
         assert 0 < len([line for line in block.splitlines() if line.strip()]) <= 10
 
 
-def test_the_room_with_walls_of_the_page_on_rooms(source, folder):
-    """It can be read, a study of it runs, and every ray ends: a lack of walls would be a warning."""
-    names = {}
-    for block in blocks_of(source / "docs/howto/my_room.md"):
+def test_the_room_with_walls_of_the_page_on_python(source):
+    """A study of it runs, and every ray ends: a lack of walls would be a warning."""
+    [block] = [block for block in blocks_of(source / "docs/howto/python.md") if "Mesh.box" in block]
+    names = {"pirsim": pirsim}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", pirsim.InputWarning)
         exec(block, names)
-    result = pirsim.run(pirsim.compile("walled.gltf", "study.yaml", set={"replicates": 2}))
-    assert result.bits.any() and not result.faults
+    assert names["result"].bits.any() and not names["result"].faults
 
 
 def test_those_of_the_page_on_datasets(source, data, folder):
