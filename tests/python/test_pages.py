@@ -101,13 +101,15 @@ def test_the_pictures_of_the_page_on_python_take_ten_lines(source):
 
 
 def test_the_room_with_walls_of_the_page_on_python(source):
-    """A study of it runs, and every ray ends: a lack of walls would be a warning."""
+    """A study of it runs, and rays end at it: `check` warns of the same room without walls."""
     [block] = [block for block in blocks_of(source / "docs/howto/python.md") if "Mesh.box" in block]
     names = {"pirsim": pirsim}
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", pirsim.InputWarning)
-        exec(block, names)
+    exec(block, names)
     assert names["result"].bits.any() and not names["result"].faults
+    scene, script = names["scene"], names["script"]
+    assert not pirsim.check(scene, script).warnings
+    scene.meshes = []
+    assert "walls" in pirsim.check(scene, script).warnings[0].text
 
 
 def test_those_of_the_page_on_datasets(source, data, folder):
