@@ -33,7 +33,7 @@ struct VariedEffectSpec {
 /// A scene of the user's own.
 struct OwnScene {
   std::filesystem::path file;
-  std::filesystem::path marks = {};  ///< beside it (docs/formats/marks.md); empty: none
+  std::filesystem::path marks = {};  ///< beside it (docs/formats/scene.md); empty: none
   auto operator<=>(const OwnScene&) const = default;
 };
 

@@ -8,7 +8,7 @@
 
 namespace pirsim {
 
-/// What went wrong, as the process exit code that the command line returns for it (docs/formats/exit_codes.md).
+/// What went wrong, as the process exit code that the command line returns for it (docs/formats/inputs.md).
 enum class ErrorCode : int {
   usage = 2,       ///< the command line or an argument of a library call is wrong
   input = 3,       ///< a file was read but its content is refused

@@ -22,7 +22,7 @@ struct SceneOptions {
   /// models.
   std::vector<std::filesystem::path> sensor_directories;
   std::vector<std::filesystem::path> data_directories{};
-  /// Marks for a scene that is left as it is, as YAML (docs/formats/marks.md); beside it are sensors looked for, too.
+  /// Marks for a scene that is left as it is, as YAML (docs/formats/scene.md); beside it are sensors looked for, too.
   std::filesystem::path marks{};
 };
 

@@ -70,7 +70,7 @@ struct FilmRequest {
   Simulated simulated{};
 };
 
-/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. Its
+/// Writes the run as an animated glTF (docs/formats/view.md): .glb, or by any other extension .gltf. Its
 /// animation begins at 0, however late in the run. Returns how long it is, seconds. Throws as picture_of() does, and
 /// Error(io).
 double export_run(const std::filesystem::path& file, const Model& model, const FilmRequest& request = {});

@@ -43,7 +43,7 @@ _DIAGNOSTIC = re.compile(r"^(?:(?P<file>.+?)(?::(?P<line>\d+):(?P<column>\d+))?:
 _MORE_THAN_ROOM_DAYS = 10**9
 _MADE_FROM = ("version", "git_revision", "compiler", "embree", "seed", "study_runs", "inputs", "responses",
               "resolved_script")
-"""Of a shard's manifest: docs/formats/manifest.md."""
+"""Of a shard's manifest: docs/formats/rows.md."""
 
 
 @dataclass(frozen=True)

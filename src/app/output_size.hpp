@@ -8,7 +8,7 @@
 
 namespace pirsim::app {
 
-// Limits, assumed; docs/formats/limits.md has them with all others.
+// Limits, assumed; docs/formats/inputs.md tells them.
 inline constexpr double film_bytes = 200e6;  ///< unless a user asks for more; what viewers and browsers open in seconds
 inline constexpr double run_bytes = 4e9;     ///< in memory, of what is recorded at every tick of a run
 
@@ -25,7 +25,7 @@ struct FilmSize {
   double keys_per_s = 10.0;
   double bytes_a_byte = 1.0;  ///< of the file, of the animation
 };
-/// Throws Error(usage) for more than a film may usually have (docs/formats/limits.md).
+/// Throws Error(usage) for more than a film may usually have (docs/formats/inputs.md).
 void require_usual(const FilmSize& film, double seconds, Size size);
 
 /// "1.2 GB", "340 MB"

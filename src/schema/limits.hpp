@@ -1,4 +1,4 @@
-// How long the lists of a spec may be, in one place: docs/formats/limits.md tells them. Whoever reads a list counts it
+// How long the lists of a spec may be, in one place: docs/formats/inputs.md tells them. Whoever reads a list counts it
 // first, so that what is too long costs nothing.
 #pragma once
 

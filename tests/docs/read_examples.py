@@ -194,7 +194,7 @@ def examples(page, reader):
         cells = line.split("|")
         if in_actions and (shown := re.fullmatch(r" `([^`]*)` ", cells[1])):
             yield number, lambda text=shown[1]: reader.action(text)
-        if page.name == "gltf_export.md":  # whose marks pirsim writes
+        if page.name == "view.md":  # whose marks are those of a film that pirsim writes
             continue
         for text in re.findall(r"`[^`{]*(\{\"(?:type|pirsim)\"[^`]*\})`", line):
             yield number, lambda text=text: reader.inline(json.loads(text))

@@ -182,7 +182,7 @@ class Hostile(unittest.TestCase):
                                                      script=script, code=3))
 
     def test_limits_count_the_product(self):
-        """docs/formats/limits.md; each also as aliases, which make much of little."""
+        """docs/formats/inputs.md; each also as aliases, which make much of little."""
         def script(**keys):
             return self.write("s.yaml", json.dumps({"pirsim_script": 1, **keys}))
         def aliases(n, item):

@@ -1,4 +1,4 @@
-// A run as an animated glTF that any viewer plays and other programs can compute with (docs/formats/gltf_export.md).
+// A run as an animated glTF that any viewer plays and other programs can compute with (docs/formats/view.md).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The side-car of a data file: what made it, which part of the study it holds, and the hash by which it is known
-// (docs/formats/manifest.md).
+// (docs/formats/rows.md).
 #pragma once
 
 #include <cstdint>
