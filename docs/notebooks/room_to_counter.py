@@ -89,4 +89,4 @@ print(f"mean absolute error in {test.sum()} windows: {desk_sensors:.2f} people w
 # %% [markdown]
 # Sensors in the corners are little better than the guess: they tell that somebody moves, and hardly how many. With
 # seeds 1 to 3 they err by 0.58 to 0.62 people, those over the desks by 0.33 to 0.35, the guess by 0.64. What more
-# rooms, days and better models reach: [count people](../count_people.md).
+# rooms, days and better models reach: [count people](../counting.md#trained-on-simulated-rooms).
