@@ -4,7 +4,6 @@ A picture is a title, a note that says what its lines and colours mean, and a li
 as PNG files. Needs Chromium and libjs-vega
 (tools/install_deps --all).
 """
-import base64
 import json
 import pathlib
 import re
@@ -63,13 +62,6 @@ def key(entries, x, y):
                   {"type": "text", "encode": {"enter": {"x": {"value": x + 24}, "y": {"value": row}, "text": {"value": name},
                                                         "baseline": {"value": "middle"}, "fontSize": {"value": 11}}}}]
     return marks
-
-
-def picture(file, x, y, size):
-    """A PNG file at a place of a panel, in pixels."""
-    url = "data:image/png;base64," + base64.b64encode(pathlib.Path(file).read_bytes()).decode()
-    encoding = {"url": url, "x": x, "y": y, "width": size[0], "height": size[1]}
-    return {"type": "image", "encode": {"enter": {key: {"value": value} for key, value in encoding.items()}}}
 
 
 def heading(title, note):

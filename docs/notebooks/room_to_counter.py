@@ -88,7 +88,5 @@ print(f"mean absolute error in {test.sum()} windows: {desk_sensors:.2f} people w
 
 # %% [markdown]
 # Sensors in the corners are little better than the guess: they tell that somebody moves, and hardly how many. With
-# seeds 1 to 5 they err by 0.48 to 0.62 people, those over the desks by 0.27 to 0.33, the guess by 0.64. What more
-# rooms, days and better models reach: [count people](../count_people.md).
-# (Windows, lens and sensors were settled while looking at some of these errors, so the counter's own is a little flattering.
-# A result needs data that nothing was chosen on.)
+# seeds 1 to 3 they err by 0.58 to 0.62 people, those over the desks by 0.33 to 0.35, the guess by 0.64. What more
+# rooms, days and better models reach: [count people](../counting.md#trained-on-simulated-rooms).

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the datasets, trains counters on them, and writes results.csv, tables.md and learning_curve.csv.
 
-See `run` for how it is called and docs/count_people.md for what came of it.
+See `run` for how it is called and docs/counting.md for what came of it.
 """
 import argparse
 import csv
@@ -18,12 +18,25 @@ from readings import BadInput, first_mornings, read_dataset, read_uci864, whole
 from scores import NAMES
 from table import Results, equivalent, estimates_of, learning_curve, motion_by_people, real_alone, simulated, trained
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-RECIPES = {"varied": [ROOT / "data/recipes/uci_like.yaml"],  # and what `pirsim dataset` is told besides
-           **{name: [HERE / "recipes" / f"{name}.yaml"] for name in ("one_room", "one_room_effects", "rooms_only",
-                                                                     "paper_motion", "zones")},
-           "zones_by_beam": [HERE / "recipes" / "zones.yaml", "--set", "sensing.change_per=beam"]}
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def like_uci864(*changes):
+    """What `pirsim dataset` is told: the shipped recipe, and what is otherwise."""
+    return [ROOT / "data/recipes/uci_like.yaml", *(word for change in changes for word in ("--set", change))]
+
+
+ONE_ROOM = ("seed=865", "rooms.0.count=1", "days=12", "split={test_days: 0.25}")
+ONE_DAY = ("days=1", "split.test_days=0")
+NO_EFFECTS = "effects=[]"
+EFFECTS_BY_DAY = ("effects=[{missed_triggers: {probability: [0.05, 0.2], sensor: each}, per: day}, "
+                  "{false_triggers: {rate_per_s: [0.0005, 0.001], sensor: each}, per: day, chance: 0.3}]")
+RECIPES = {"varied": like_uci864(), "one_room": like_uci864(*ONE_ROOM, NO_EFFECTS),
+           "one_room_effects": like_uci864(*ONE_ROOM, EFFECTS_BY_DAY), "rooms_only": like_uci864(*ONE_DAY, NO_EFFECTS),
+           "paper_motion": like_uci864(*ONE_DAY, "schedule.style=choreographed"),
+           "zones": like_uci864(*ONE_DAY, "sensing.response=zones"),
+           "zones_by_beam": like_uci864(*ONE_DAY, "sensing.response=zones", "sensing.change_per=beam")}
+SMALL = like_uci864("rooms.0.count=3", "days=2", "schedule.to=09:30", "split.test_days=0.5")
 REAL = "real: UCI 864"
 EQUAL = 8  # mornings in each training set, so that rows of the table differ by what their names say
 
@@ -130,7 +143,7 @@ def main():
         sys.exit(f"count_people: {error}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     pirsim = pirsim_of(arguments.pirsim)
-    recipes = {"varied": [HERE / "recipes" / "small.yaml"]} if arguments.small else RECIPES
+    recipes = {"varied": SMALL} if arguments.small else RECIPES
     started = time.monotonic()
     data = {}
     for name, recipe in recipes.items():

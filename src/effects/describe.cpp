@@ -92,15 +92,17 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
   if (!info.in_analog.empty()) out << "With analog sensors: " << info.in_analog << ".\n";
-  out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
-  out << "| parameter | off | typical | prior | accepted | source |\n|---|---|---|---|---|---|\n";
+  out << '\n';
   for (const ParameterInfo& parameter : info.parameters) {
-    out << "| `" << parameter.name << "` | " << off_of(parameter) << " | "
-        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << limits_of(parameter)
-        << " | " << source_of(parameter) << " |\n";
+    out << "- `" << parameter.name << "` (";
+    if (parameter.role != Role::detail) out << "off " << off_of(parameter) << ", ";
+    out << "typical " << with_unit(parameter.typical, parameter.unit) << "): prior " << range_of(parameter)
+        << "; accepted " << limits_of(parameter) << "; " << source_of(parameter) << '\n';
   }
   for (const ChoiceInfo& choice : info.choices) {
-    out << "| `" << choice.name << "` | - | " << choice.otherwise << " | " << values_of(choice) << " | | |\n";
+    out << "- `" << choice.name << "`: ";
+    if (is_word(choice.kind)) out << values_of(choice) << "; ";
+    out << "default " << choice.otherwise << '\n';
   }
   out << '\n';
 }

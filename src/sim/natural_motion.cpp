@@ -21,8 +21,8 @@ constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 
 constexpr double breath_m = 0.004, breath_lying_m = 0.006;
 constexpr int breath_levels = 8;  // a posture changes 16 times a breath instead of 200 times
 // How often a posture changes in small movements, or the next higher rate that divides the ticks: `assumed` (5 to 50).
-// 25 changes a signal by 2.8 % of its rms, less
-// than 34 rays a zone do; 5 by 16 % (analog_test.cpp).
+// 25 changes a signal by 3.9 % of its rms, less
+// than 34 rays a zone do; 5 by 21 % (analog_test.cpp).
 constexpr int small_movements_hz = 25;
 constexpr double settles_s = 1.0;   // assumed (0.6-1.5): into the posture of a new activity
 constexpr double act_ends_s = 2.0;  // assumed (1-4): what is left of the act that one is met in

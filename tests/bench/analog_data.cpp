@@ -1,11 +1,8 @@
-// Numbers behind the pictures of docs/physics/analog.md, as CSV: pirsim_analog_data ranges|alarms SENSOR.yaml
+// Numbers behind a picture of docs/physics/analog.md, as CSV: pirsim_analog_data SENSOR.yaml
 #include <cmath>
 #include <exception>
 #include <iostream>
-#include <string_view>
-#include <vector>
 
-#include "pir/analog_circuit.hpp"
 #include "pir/calibration.hpp"
 #include "pirsim/io.hpp"
 
@@ -31,42 +28,15 @@ void write_ranges(const SensorModelSpec& model) {
   }
 }
 
-/// How often noise alone passes thresholds at so many standard deviations, in either direction.
-void write_alarms(const SensorModelSpec& model) {
-  constexpr double seconds = 20000.0;
-  std::cout << "tick_s,level_sd,alarms,seconds\n";
-  for (const double tick_s : {0.02, 0.005}) {
-    for (double level = 0.5; level < 4.1; level += 0.25) {
-      DetectorSpec spec = model.detector;
-      spec.comparator = {.positive_v = level * spec.amplifier.noise_v_pp / 6.6,
-                         .negative_v = level * spec.amplifier.noise_v_pp / 6.6};
-      const pir::AnalogCircuit detector(spec, 1.0, tick_s);
-      pir::AnalogCircuit::State state =
-          detector.start(0.0, {.seed = 1, .run = 0, .entity = 0, .purpose = Purpose::detector_noise});
-      std::int64_t alarms = 0;
-      for (std::int64_t tick = 0; tick < std::llround(seconds / tick_s); ++tick) {
-        const bool before = pir::AnalogCircuit::on(state);
-        detector.advance(state, 0.0);
-        if (!before && pir::AnalogCircuit::on(state)) ++alarms;
-      }
-      std::cout << tick_s << ',' << level << ',' << alarms << ',' << seconds << '\n';
-    }
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    const std::string_view what = argc == 3 ? argv[1] : "";
-    if (what == "ranges") {
-      write_ranges(io::read_sensor_model(argv[2]));
-    } else if (what == "alarms") {
-      write_alarms(io::read_sensor_model(argv[2]));
-    } else {
-      std::cerr << "usage: pirsim_analog_data ranges|alarms SENSOR.yaml\n";
+    if (argc != 2) {
+      std::cerr << "usage: pirsim_analog_data SENSOR.yaml\n";
       return 2;
     }
+    write_ranges(io::read_sensor_model(argv[1]));
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 3;

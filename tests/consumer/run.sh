@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
-# Installs a build of pirsim under a scratch prefix and is its user there: the README's program by find_package and by
-# pkg-config, one with a room made in memory, one with a detector of its own, one that
-# surveys a room, one that compares a model with measurements, and every public header by itself.
+# Installs a build of pirsim under a scratch prefix and is its user there: the program of docs/howto/cpp.md by
+# find_package and by pkg-config, one with a room made in memory, one with a detector of its own, one that surveys a
+# room, one that compares a model with measurements, and every public header by itself.
 # Usage: [CXXFLAGS=...] run.sh BUILD_DIR SOURCE_DIR CXX
 set -euo pipefail
 build=$1 source=$2 cxx=$3 flags=${CXXFLAGS:-}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-# The README shows main.cpp, word for word but for its first line.
-diff <(sed -n '/^```cpp$/,/^```$/p' "$source/README.md" | sed '1d;$d') <(tail -n +2 "$source/tests/consumer/main.cpp")
+# The how-to shows main.cpp, word for word but for its first line.
+diff <(sed -n '/^```cpp$/,/^```$/p' "$source/docs/howto/cpp.md" | sed '1d;$d') <(tail -n +2 "$source/tests/consumer/main.cpp")
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 
 cmake -S "$source/tests/consumer" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
   -DPIRSIM_VERSION="$(sed -nE 's/^project\(pirsim VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")" \
   -DPIRSIM_INCLUDE_DIR="$scratch/prefix/include" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 cmake --build "$scratch/build" --parallel 2 >/dev/null
-# The README's CMakeLists.txt, as it stands there.
+# The how-to's CMakeLists.txt, as it stands there.
 mkdir "$scratch/own" && cp "$source/tests/consumer/main.cpp" "$scratch/own"
-sed -n '/^```cmake$/,/^```$/p' "$source/README.md" | sed '1d;$d' >"$scratch/own/CMakeLists.txt"
+sed -n '/^```cmake$/,/^```$/p' "$source/docs/howto/cpp.md" | sed '1d;$d' >"$scratch/own/CMakeLists.txt"
 cmake -S "$scratch/own" -B "$scratch/own/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 cmake --build "$scratch/own/build" >/dev/null

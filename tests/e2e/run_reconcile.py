@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The README's worked example of `pirsim reconcile`, word for word but on a study of one seat and half a minute; then
+"""The worked example of docs/howto/reconcile.md, word for word but on a study of one seat and half a minute; then
 `plan` and `selftest` on the same; and all three pages in a browser, if there is one. Then data whose clock is late, or
 early, by three seconds.
 
@@ -21,10 +21,10 @@ from run_report_pages import check_page
 SHORT = ["--set", "trials.for_each.seat=[S1]", "--set", "people.0.actions.3.work.duration_s=30"]
 
 
-def readme_example(source):
+def example(source):
     """The commands between the fences below the heading."""
-    text = (source / "README.md").read_text(encoding="utf-8")
-    section = text.split("## What is the model missing?", 1)[1]
+    text = (source / "docs/howto/reconcile.md").read_text(encoding="utf-8")
+    section = text.split("## Try it on the shipped room", 1)[1]
     return re.search(r"```sh[^\n]*\n(.*?)```", section, flags=re.DOTALL).group(1)
 
 
@@ -35,7 +35,7 @@ def run_example(pirsim, source, folder):
                              source / "data/studies/studyA.yaml", *SHORT, "--print-config"], capture_output=True, text=True,
                             check=True).stdout
     (folder / "data/studies/studyA.yaml").write_text(config)
-    commands = re.sub(r"--budget [0-9.]+", "", readme_example(source))
+    commands = re.sub(r"--budget [0-9.]+", "", example(source))
     commands = commands.replace("pirsim reconcile --scene", "pirsim reconcile --budget 0.05 --max-effects 1 --scene")
     assert "--budget 0.05" in commands, commands
     (folder / "bin").mkdir()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Is the packages' user in a bare Debian system: installs the command, runs the main job, removes it without a trace;
-# installs the library and builds the README's program; builds the source archive. Takes some minutes. Without root,
+# installs the library and builds the how-to's program; builds the source archive. Takes some minutes. Without root,
 # debootstrap or a Debian mirror it can't be done: exit code 77.
 # Usage: try_packages.sh SOURCE_DIR BUILD_DIR FOLDER_OF_PACKAGES
 set -euo pipefail
@@ -52,7 +52,7 @@ inside "$root" "$adding"'
     head -1 rows.csv >expected.csv && awk -F, "\$1 == 1 && \$2 == \"S8\"" rows.csv >>expected.csv
     cmp run.csv expected.csv
   done'
-echo "packages: the README's program, built by CMake and by pkg-config, gives the command's rows"
+echo "packages: the how-to's program, built by CMake and by pkg-config, gives the command's rows"
 
 # shellcheck disable=SC2016
 inside "$root" '

@@ -100,13 +100,16 @@ def test_the_pictures_of_the_page_on_python_take_ten_lines(source):
         assert 0 < len([line for line in block.splitlines() if line.strip()]) <= 10
 
 
-def test_the_room_with_walls_of_the_page_on_rooms(source, folder):
-    """It can be read, a study of it runs, and every ray ends: a lack of walls would be a warning."""
-    names = {}
-    for block in blocks_of(source / "docs/howto/my_room.md"):
-        exec(block, names)
-    result = pirsim.run(pirsim.compile("walled.gltf", "study.yaml", set={"replicates": 2}))
-    assert result.bits.any() and not result.faults
+def test_the_room_with_walls_of_the_page_on_python(source):
+    """A study of it runs, and rays end at it: `check` warns of the same room without walls."""
+    [block] = [block for block in blocks_of(source / "docs/howto/python.md") if "Mesh.box" in block]
+    names = {"pirsim": pirsim}
+    exec(block, names)
+    assert names["result"].bits.any() and not names["result"].faults
+    scene, script = names["scene"], names["script"]
+    assert not pirsim.check(scene, script).warnings
+    scene.meshes = []
+    assert "walls" in pirsim.check(scene, script).warnings[0].text
 
 
 def test_those_of_the_page_on_datasets(source, data, folder):

@@ -17,7 +17,7 @@ struct Partner {
 /// Effects with which the first one may have made the data, the likeliest first. No pair is simulated: in a realization
 /// that has a dataset of either effect, what each changes in the features is added up. A partner is told if these
 /// superposed datasets are often enough as strange among themselves as the data are (p above the level, as in the
-/// absolute test of the classifier). A superposition is no simulation (docs/validation/method.md tells how often it
+/// absolute test of the classifier). A superposition is no simulation (docs/validation.md tells how often it
 /// finds the true partner). first: hypothesis, 1 or more. measured: statistics.
 [[nodiscard]] std::vector<Partner> partners_of(const TableView& view, std::size_t first,
                                                std::span<const float> measured, double level, const Context& context);

@@ -46,11 +46,11 @@ TEST_CASE("the page states which values each parameter takes, and a script may g
     REQUIRE(section != std::string::npos);
     for (const effects::ParameterInfo& parameter : info.parameters) {
       INFO(info.name << '.' << parameter.name);
-      const std::size_t row = document.find("| `" + parameter.name + "` |", section);
+      const std::size_t row = document.find("- `" + parameter.name + "` (", section);
       REQUIRE(row != std::string::npos);
       const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
       CHECK_THAT(document.substr(row, document.find('\n', row) - row),
-                 contains("| " + number(parameter.least) + " to " + number(parameter.most) + unit + " |"));
+                 contains("; accepted " + number(parameter.least) + " to " + number(parameter.most) + unit + ";"));
       EffectSpec spec{info.name, {}, {}, {}};
       if (!parameter.only_if.choice.empty()) spec.choices[parameter.only_if.choice] = parameter.only_if.word;
       const double beyond = 1e-3 * (parameter.most - parameter.least);
