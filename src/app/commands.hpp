@@ -29,9 +29,6 @@ void add_merge_command(CLI::App& app);
 void add_reconcile_command(CLI::App& app);
 void add_log_command(CLI::App& app);
 void add_help_command(CLI::App& app);
-/// These two belong to reconcile.
-void add_seal_command(CLI::App& reconcile_command);
-void add_open_command(CLI::App& reconcile_command);
 
 /// In the order of the help.
 inline constexpr std::array all_commands{

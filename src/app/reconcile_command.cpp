@@ -313,7 +313,7 @@ void add_reconcile_command(CLI::App& app) {
       ->check(CLI::Range(1, 5));
   offer_analysis(command, *analysis);
   on_call(command, inputs, [analysis, options](const Inputs& given) { reconcile_data(given, *analysis, *options); });
-  for (const auto add : {add_selftest_command, add_plan_command, add_seal_command, add_open_command}) add(command);
+  for (const auto add : {add_selftest_command, add_plan_command}) add(command);
 }
 
 }  // namespace pirsim::app

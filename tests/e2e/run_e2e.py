@@ -47,10 +47,9 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
             ("view",): ("studyA.yaml",),
             ("coverage",): ("studyB.yaml",), ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
             ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
-            ("reconcile", "selftest"): ("studyA.yaml",),
-            ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
+            ("reconcile", "selftest"): ("studyA.yaml",)}
 OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
-          ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",), ("data",): (),
+          ("status",): ("shards",), ("data",): (),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
           ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("--log", "nowhere.csv"),
@@ -64,7 +63,7 @@ VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
-          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
+          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
           "--cleaning": "none", "--time-zone": "Europe/Berlin", "--standard": "nema-wd7", "--light": "lit.csv", "--schedule": "light.csv"}
 OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
@@ -93,9 +92,7 @@ WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--repo
            ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--schedule", "day.csv", "--report",
                            "light.html"), "costs.csv lit.csv day.csv light.html"),
            ("log",): (("log.csv", "-o", "log_rows.csv", "--report", "log.html"), "log_rows.csv log.html"),
-           ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md"),
-           ("reconcile", "seal"): ((*STUDY, "--answer", "answer.json", "--out", "sealed"),
-                                   "answer.json sealed/measured.csv sealed/commitment.sha256")}
+           ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md")}
 # Take minutes; day is a run.
 SLOW = {("day",), ("reconcile",), ("reconcile", "plan"), ("reconcile", "selftest"), ("dataset",), ("calibrate",),
         ("count",), ()}
@@ -117,7 +114,7 @@ def value_of(command, option):
         return ROOM_VALUES[option]
     if command == ("home",) and option in HOME_VALUES:
         return HOME_VALUES[option]
-    return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
+    return VALUES.get(option, "1" if option != "--out" else "folder")
 
 
 def with_folder(option, words):
@@ -149,8 +146,7 @@ class Options(unittest.TestCase):
                 for file in files.split():
                     self.assertRegex(line[0], rf"(wrote |, ){re.escape(file)}(?=[:,]|$)", command)
                     self.assertTrue((pathlib.Path(folder) / file).exists(), file)
-                for file in ("answer.json", "sealed/measured.csv", "sealed/commitment.sha256", "marks.yaml"):
-                    (pathlib.Path(folder) / file).unlink(missing_ok=True)  # these are never overwritten
+                (pathlib.Path(folder) / "marks.yaml").unlink(missing_ok=True)  # is never overwritten
                 self.assertNotIn("wrote", pirsim(*command, *args, "-q", cwd=folder).stderr, command)
 
     def test_no_command_offers_an_option_that_it_refuses(self):
@@ -693,9 +689,7 @@ class Help(unittest.TestCase):
                            (("--threads", "-1"), "--threads: '-1' is not a whole number from 0"),
                            (("--seed", "abc"), "--seed: 'abc' is not a whole number"),
                            (("room", "--seed", "-1"), "--seed: '-1' is not a whole number from 0 to 2^64 - 1"),
-                           (("room", "--seed", 2 ** 64), f"--seed: '{2 ** 64}' is not a whole number from 0 to 2^64 - 1"),
-                           (("reconcile", "seal", "--secret-seed", "-1"),
-                            "--secret-seed: '-1' is not a whole number from 0 to 2^64 - 1")):
+                           (("room", "--seed", 2 ** 64), f"--seed: '{2 ** 64}' is not a whole number from 0 to 2^64 - 1")):
             self.assertEqual(pirsim(*args, code=2).stderr.splitlines()[0], f"error: {told}")
 
     def test_version_has_a_short_name(self):
@@ -713,7 +707,7 @@ class CommandLine(unittest.TestCase):
         self.assertIn("did you mean", study("--tracer", "embre", code=2).stderr)
 
     def test_what_only_an_analysis_of_data_takes_is_refused_by_its_subcommands(self):
-        for command in ("plan", "selftest", "seal"):
+        for command in ("plan", "selftest"):
             text = pirsim("reconcile", command, "--help").stdout
             for option in ("--measured", "--holdout", "--max-effects"):
                 self.assertNotIn(option, text)

@@ -203,8 +203,7 @@ class ReadOnce(Case):
         self.assertIn("buffer file 'room.bin' can't be found", told)
 
     def test_two_inputs_are_not_one_stream(self):
-        for args in (("--scene", "-", "--script", "-"), ("reconcile", "--scene", "a", "--script", "-", "--nuisance", "-"),
-                     ("reconcile", "open", "--answer", "-", "--commitment", "-", "--report", "r")):
+        for args in (("--scene", "-", "--script", "-"), ("reconcile", "--scene", "a", "--script", "-", "--nuisance", "-")):
             self.assertIn("can't both be standard input", run(*args, code=2, data=b"")[1])
 
     def test_what_can_not_be_read_is_told_as_that(self):

@@ -29,7 +29,6 @@ CONTENTS = {("coverage", "--output"): ("coverage.csv", "PIR1.png", "room.png"),
                                         "calibration.html", "pool/rows/room_0001/day_01.csv"),
             ("reconcile", "--out"): REPORT, ("reconcile plan", "--out"): ("plan.csv", "plan.html", "plan.json", "table/table.journal"),
             ("reconcile selftest", "--out"): ("selftest.csv", "selftest.md", "selftest.html", "targets.md"),
-            ("reconcile seal", "--out"): ("measured.csv", "commitment.sha256"),
             ("reconcile", "--table"): TABLE, ("reconcile plan", "--table"): TABLE, ("reconcile selftest", "--table"): TABLE}
 SHARDS = "merge", "DIR"
 WORDS = {("data", "name"), ("effects", "name"), ("help", "command")}  # arguments that name no file
@@ -275,7 +274,6 @@ class Contents(Case):
                 ("maps", ("coverage", "--scene", room, "--script", "studyB.yaml", *coarse, "-o"), ("--marks",)),
                 ("plans", ("placements", "--scene", room, "--script", "placements.yaml", *coarse, "--set",
                            "search.evaluations=2", "--maps"), ("--marks",)),
-                ("sealed", ("reconcile", "seal", *study, "--answer", "answer.json", "-o"), ("--nuisance",)),
                 ("shards", ("run", *study, "--shard", "1/1", "-o"), ("--marks",)),
                 ("data", ("dataset", "tiny.yaml", "-o"), ())):
             done = pirsim(*args, folder, cwd=self.folder)

@@ -1,4 +1,4 @@
-// Scores, plans and what a self-test counts in words, and a self-test as text.
+// Plans and what a self-test counts in words, and a self-test as text.
 #include <array>
 #include <cmath>
 #include <iomanip>
@@ -10,12 +10,6 @@
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
-
-std::string sentence(const Score& score) {
-  return std::string(name(score.mark)) + ": hidden was " +
-         (score.hidden.empty() ? "nothing" : joined(score.hidden, ", ")) + ", the verdict was " +
-         std::string(name(score.verdict)) + (score.named.empty() ? "" : " (" + joined(score.named, ", ") + ")");
-}
 
 std::string name(const Design& design) {
   constexpr std::array<std::string_view, 6> names{"as planned", "",           "all again",

@@ -8,7 +8,6 @@
 #include "pirsim/reconcile.hpp"
 #include "reconcile/data/longer_study.hpp"
 #include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/seal.hpp"
 #include "reconcile/validation/targets.hpp"
 
 namespace pirsim::reconcile {
@@ -17,7 +16,6 @@ namespace pirsim::reconcile {
 /// missing may well be none of them.
 [[nodiscard]] bool is_unsupported(const Outcome& outcome);
 [[nodiscard]] std::string sentence(const PlanResult& result);
-[[nodiscard]] std::string sentence(const Score& score);
 [[nodiscard]] std::string sentence(const Residuals& residuals);
 /// Beside the effects of a verdict; empty if nothing is left over.
 [[nodiscard]] std::string sentence_of_rest(const Residuals& rest);
