@@ -27,8 +27,8 @@ CONTENTS = {("coverage", "--output"): ("coverage.csv", "PIR1.png", "room.png"),
             ("placements", "--maps"): ("before.png", "after.png"), ("dataset", "--output"): DATASET,
             ("calibrate", "--output"): ("recipe.yaml", "weights.csv", "counter.json", "calibration.json",
                                         "calibration.html", "pool/rows/room_0001/day_01.csv"),
-            ("reconcile", "--out"): REPORT, ("reconcile plan", "--out"): ("plan.csv", "plan.html", "plan.json", "table/table.journal"),
-            ("reconcile selftest", "--out"): ("selftest.csv", "selftest.md", "selftest.html", "targets.md"),
+            ("reconcile", "--output"): REPORT, ("reconcile plan", "--output"): ("plan.csv", "plan.html", "plan.json", "table/table.journal"),
+            ("reconcile selftest", "--output"): ("selftest.csv", "selftest.md", "selftest.html"),
             ("reconcile", "--table"): TABLE, ("reconcile plan", "--table"): TABLE, ("reconcile selftest", "--table"): TABLE}
 SHARDS = "merge", "DIR"
 WORDS = {("data", "name"), ("effects", "name"), ("help", "command")}  # arguments that name no file

@@ -8,7 +8,7 @@
 #include "pirsim/reconcile.hpp"
 #include "reconcile/data/longer_study.hpp"
 #include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/targets.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::reconcile {
 
@@ -42,7 +42,6 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string when_of(const ResidualDriver& driver);
 [[nodiscard]] std::string what_of(const ResidualDriver& driver);
 [[nodiscard]] std::string_view in_words(Counted counted) noexcept;
-[[nodiscard]] std::string_view in_words(Reached reached) noexcept;
 /// Short, and as part of a sentence: what is measured.
 [[nodiscard]] std::string name(const Design& design);
 [[nodiscard]] std::string what_of(const Design& design);
