@@ -34,6 +34,7 @@ std::string version_text() {
 
 int run_command_line(int argc, char** argv) {
   Command app{"Headless simulator of passive-infrared motion sensors", "pirsim"};
+  app.formatter(help_formatter());
   app.footer(first_steps);
   app.set_version_flag("-V,--version", version_text);
   app.require_subcommand(0, 1);

@@ -44,13 +44,6 @@ void require_one_standard_input(const CLI::App& command) {
   }
 }
 
-void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
-  if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
-  const std::string spoken = spoken_name(command);
-  throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") +
-                                    " FILE is missing; see pirsim " + (spoken.empty() ? "" : spoken + ' ') + "--help");
-}
-
 /// Functions that offer an option to several commands give it one description. Others mean something of their own.
 bool mean_the_same(const CLI::Option& one, const CLI::Option& other) {
   return one.get_description() == other.get_description();
@@ -92,9 +85,11 @@ std::string explain_word(const CLI::App& app, const std::string& word) {
   const bool is_option = word.size() > 1 && word.front() == '-';
   std::vector<std::string> known;
   if (is_option) {
-    for (const CLI::Option* option : command->get_options(nullptr)) known.push_back(option->get_name());
+    for (const CLI::Option* option : command->get_options(nullptr)) {
+      if (!option->get_group().empty()) known.push_back(option->get_name());
+    }
   } else {
-    for (const CLI::App* other : command->get_subcommands(nullptr)) known.push_back(other->get_name());
+    known = offered_commands(*command);
   }
   const std::string spoken = spoken_name(*command);
   const std::string hint = command->get_option_no_throw("--scene") == nullptr ? std::string() : meant_as(word);
@@ -154,6 +149,14 @@ void offer_scene_file(CLI::App& command, Inputs& inputs) {
 }
 
 }  // namespace
+
+std::vector<std::string> offered_commands(const CLI::App& parent) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : parent.get_subcommands(nullptr)) {
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  }
+  return names;
+}
 
 CLI::Option* as_input(CLI::Option* option) {
   return option->description(option->get_description() + said_of_inputs)
@@ -254,7 +257,7 @@ std::vector<std::string> model_options(const Inputs& inputs) {
 }
 
 void offer_tracer(CLI::App& command, Inputs& inputs) {
-  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
+  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->group("");
 }
 
 void offer_seed(CLI::App& command, Inputs& inputs) {
@@ -321,6 +324,34 @@ Command& add_command(CLI::App& parent, const std::string& name, const std::strin
   parent.add_subcommand(command);
   command->footer("Examples:" + examples);
   return *command;
+}
+
+Command& add_old_command(CLI::App& parent, const std::string& name, const std::string& what,
+                         const std::string& examples) {
+  Command& command = add_command(parent, name, what, examples);
+  command.group("");
+  return command;
+}
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() {
+  class Formatter : public CLI::Formatter {
+    [[nodiscard]] std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+      std::string names = CLI::Formatter::make_option_name(option, is_positional) + ',';
+      for (const std::string old : {"--out", "--print-script", "--window"}) {
+        if (const auto at = names.find(',' + old + ','); at != std::string::npos) names.erase(at, old.size() + 1);
+      }
+      names.pop_back();
+      return names;
+    }
+  };
+  return std::make_shared<Formatter>();
+}
+
+void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
+  if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
+  const std::string spoken = spoken_name(command);
+  throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") +
+                                    " FILE is missing; see pirsim " + (spoken.empty() ? "" : spoken + ' ') + "--help");
 }
 
 void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,

@@ -419,8 +419,8 @@ class Messages(Case):
                 if node.get("extras", {}).get("pirsim", {}).get("type") == "entrance":
                     del node["extras"]
         scene = self.edited_scene(no_door)
-        told = run("day", "--scene", scene, "--staff", 1, "--days", 1, "-q", code=3)[1]
-        self.assertNotRegex(told, r"pirsim day:\d")
+        told = run("run", "--scene", scene, "--staff", 1, "--days", 1, "-q", code=3)[1]
+        self.assertNotRegex(told, r"pirsim run:\d")
         self.assertIn("error: ", told)
 
     def test_words_of_json_are_told_whole(self):
