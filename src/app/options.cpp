@@ -22,6 +22,11 @@ std::string take_standard_input(std::string& file) {
   return {};
 }
 
+/// Also of an option that isn't in the help, which CLI11 gives no name.
+std::string name_of(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().front();
+}
+
 /// As it is mostly typed: "-o".
 std::string told_name(const CLI::Option& option) {
   if (option.get_positional()) return "the input";
@@ -58,7 +63,7 @@ void take_from_parent(CLI::App& command) {
   CLI::App& parent = *command.get_parent();
   for (CLI::Option* option : parent.get_options(nullptr)) {
     if (option->count() == 0 || is_about_pirsim(parent, option)) continue;
-    const std::string name = option->get_name();
+    const std::string name = name_of(*option);
     CLI::Option* own = command.get_option_no_throw(name);
     if (own == nullptr) throw Error(ErrorCode::usage, name + " is not an option of '" + spoken_name(command) + "'");
     if (!mean_the_same(*option, *own)) {
@@ -343,6 +348,10 @@ std::shared_ptr<CLI::FormatterBase> help_formatter() {
       names.pop_back();
       return names;
     }
+    /// What goes without what, a message says to whom it concerns.
+    [[nodiscard]] std::string make_option_opts(const CLI::Option* option) const override {
+      return option->get_expected_max() == 0 ? "" : CLI::Formatter::make_option_opts(option);
+    }
   };
   return std::make_shared<Formatter>();
 }
@@ -372,7 +381,7 @@ void pass_options_on(CLI::App& app) {
 
 std::string explain(const CLI::App* app, const CLI::Error& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    if (const CLI::Option* option = repeated_option(*app)) return "error: " + option->get_name() + " is given twice\n";
+    if (const CLI::Option* option = repeated_option(*app)) return "error: " + name_of(*option) + " is given twice\n";
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
     if (std::string text = explain_conversion(*app, error.what()); !text.empty()) return text;

@@ -98,7 +98,7 @@ void offer_map_report(CLI::App& command, std::filesystem::path& report);
 /// A command's word of an earlier version: accepted, but not in the help.
 [[nodiscard]] Command& add_old_command(CLI::App& parent, const std::string& name, const std::string& what,
                                        const std::string& examples);
-/// As CLI11's, without options' names of an earlier version, which are accepted as well.
+/// As CLI11's, without what excludes a flag, and without options' names of an earlier version, which are accepted.
 [[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter();
 enum class Needs { scene, scene_and_script };
 /// Throws Error(usage) if one of them is missing.

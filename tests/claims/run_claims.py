@@ -5,7 +5,7 @@
 
 Tables and datasets are kept in DIR, so that an interrupted run goes on. A size of 1 has 600 datasets without an effect
 and 20 of every effect and strength, and takes a day; 0.1 an hour or two. Exit code 1: a target is surely missed, since
-the whole 95 % interval of the share lies outside. What no catalogue has is hidden by tests/second_simulator/challenge.py.
+the whole 95 % interval of the share lies outside. tests/second_simulator/challenge.py hides what no catalogue has.
 """
 import argparse
 import csv
@@ -55,13 +55,16 @@ def shares(cases, families, is_known):
 
     def is_right(case):
         return is_named(case) and case["named"] == case["truth"]
+
+    def is_seen(case):
+        return case["verdict"] != "no-disagreement"
     nothing, one, left_out = of_kind("nothing"), of_kind("one"), of_kind("left_out")
-    seen = [case for case in one if case["verdict"] != "no-disagreement"]
+    seen = [case for case in one if is_seen(case)]
     motion = [case for case in one + left_out if families[case["truth"]] == "motion"]
     told = {case["dataset"] for case in one if is_right(case)}
-    told_left_out = [case for case in left_out if case["dataset"] in told and case["verdict"] != "no-disagreement"]
+    told_left_out = [case for case in left_out if case["dataset"] in told and is_seen(case)]
     for what, low, high, all_cases, hit in (
-            ("a disagreement although nothing is hidden", 0, 0.05, nothing, lambda c: c["verdict"] != "no-disagreement"),
+            ("a disagreement although nothing is hidden", 0, 0.05, nothing, is_seen),
             ("a name although nothing is hidden", 0, 0.01, nothing, is_named),
             ("exactly the right name, given a disagreement", 0.93 if is_known else 0.82, 1, seen, is_right),
             ("the right family, given a disagreement", 0.92, 1, seen, lambda c: c["family"] == families[c["truth"]]),
@@ -95,8 +98,8 @@ def main():
     parser.add_argument("--size", type=float, default=0.1)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS))
     given = parser.parse_args()
-    table = subprocess.run([given.pirsim, "effects", "--format", "csv"], capture_output=True, text=True, check=True).stdout
-    families = {row["effect"]: row["family"] for row in csv.DictReader(table.splitlines())}
+    effects = subprocess.check_output([given.pirsim, "effects", "--format", "csv"], text=True)
+    families = {row["effect"]: row["family"] for row in csv.DictReader(effects.splitlines())}
     missed = False
     for part in given.parts:
         scene, script, *options = PARTS[part]

@@ -79,7 +79,7 @@ class Home(unittest.TestCase):
         recipe = DATA / "recipes" / "homes.yaml"
         self.assertIn("isn't a home", pirsim("room", "--home", DATA / "recipes" / "tiny.yaml", "-o", "x.gltf", code=2).stderr)
         self.assertIn("--rooms requires --home", pirsim("room", "--rooms", 2, "-o", "x.gltf", code=2).stderr)
-        self.assertIn("--kind excludes --home", pirsim("room", "--home", "--kind", "office", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("--home excludes --kind", pirsim("room", "--home", "--kind", "office", "-o", "x.gltf", code=2).stderr)
         with tempfile.TemporaryDirectory() as folder:  # a recipe says itself what its rooms are
             files = [pathlib.Path(folder) / name for name in ("a.gltf", "b.gltf")]
             pirsim("room", "--home", recipe, "-o", files[0], "-q")

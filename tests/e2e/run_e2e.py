@@ -178,7 +178,7 @@ class Options(unittest.TestCase):
                     if option == "--help" or option in rest or option == "--output":
                         continue
                     value = () if takes is None else (value_of(command, option),)
-                    needed = (*rest, "--home") if option in FLAT_VALUES else rest
+                    needed = (*rest, "--home") if option in FLAT_VALUES else rest[:1] if option == "--status" else rest
                     result = subprocess.run([PIRSIM, *command, *needed, option, *value], capture_output=True, text=True,
                                             cwd=folder)
                     self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
@@ -241,7 +241,7 @@ class Options(unittest.TestCase):
                     self.assertEqual((one.stdout, one.stderr), (other.stdout, other.stderr))
                     text = pirsim(*now[:1], "--help").stdout + pirsim("--help").stdout
                     for word in {*map(str, old)} - {*map(str, now)}:
-                        self.assertNotRegex(text, rf"[\s,]{word}[\s,]", word)
+                        self.assertNotRegex(text, rf"(\n  |,){word}[ ,]", word)
         self.assertNotIn("--tracer", pirsim("--help").stdout)
         self.assertEqual(pirsim("help", "home").stdout.splitlines()[2:], pirsim("help", "room").stdout.splitlines()[2:])
 
@@ -360,8 +360,8 @@ class Days(unittest.TestCase):
     def test_what_a_room_can_not_hold_is_refused(self):
         room = "--scene", DATA / "rooms" / "open_office.gltf"
         self.assertIn("say who comes", pirsim("run", *room, "--days", 2, code=2).stderr)
-        self.assertIn("--days excludes --replicates", pirsim(*room, "--staff", 1, "--days", 2, "--replicates", 2, code=2).stderr)
-        self.assertIn("--staff excludes --script", pirsim(*room, "--staff", 1, "--script", "office_week.yaml", code=2).stderr)
+        self.assertIn("--replicates excludes --days", pirsim(*room, "--staff", 1, "--days", 2, "--replicates", 2, code=2).stderr)
+        self.assertIn("--script excludes --staff", pirsim(*room, "--staff", 1, "--script", "office_week.yaml", code=2).stderr)
         self.assertIn("more staff than the 9 seats", pirsim("run", *room, "--staff", 10, code=3).stderr)
         for option, value, told in (("--to", "25:00", "error: --to: expected a time of day"),
                                     ("--from", "09:00 #", "error: --from: '09:00 #' is not made of digits"),

@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
 namespace {
