@@ -13,7 +13,7 @@ namespace pirsim::control {
 namespace {
 
 std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }
-std::string share(double value) { return fixed(100.0 * value, value < 0.1 ? 1 : 0) + " %"; }
+std::string share(double value) { return percent(value, value < 0.1 ? 1 : 0); }
 std::string range(const Figure& figure, double scale, int digits) {
   if (!figure.over_days) return "";
   return " (" + fixed(scale * figure.over_days->low, digits) + " to " + fixed(scale * figure.over_days->high, digits) +
