@@ -64,8 +64,9 @@ std::string title_of(const LogOptions& options) {
 
 void write_report(const Log& log, const LogFacts& facts, const LogOptions& options) {
   io::Report report = io::log_report(log, facts, title_of(options));
-  report.footer = "pirsim " + version() + " (" + git_revision() + ")";
-  for (const InputFile& file : log.files) report.footer += ", " + io::name_of_input(file.path);
+  std::vector<std::filesystem::path> files;
+  for (const InputFile& file : log.files) files.emplace_back(file.path);
+  report.footer = made_from(files);
   io::write_report(options.report, report);
 }
 

@@ -28,8 +28,7 @@ constexpr const char* first_steps = R"(Examples:
 )";
 
 std::string version_text() {
-  return "pirsim " + version() + " (" + git_revision() + "), " + compiler() + ", Embree " + rt::embree_version() + " " +
-         rt::instruction_set();
+  return program() + ", " + compiler() + ", Embree " + rt::embree_version() + " " + rt::instruction_set();
 }
 
 int run_command_line(int argc, char** argv) {

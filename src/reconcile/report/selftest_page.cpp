@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "stats/intervals.hpp"

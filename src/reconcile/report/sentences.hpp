@@ -60,7 +60,5 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
 /// So many digits after the point; never "-0".
 [[nodiscard]] std::string fixed(double value, int digits);
-/// Of a share: "12 %".
-[[nodiscard]] std::string percent(double share);
 
 }  // namespace pirsim::reconcile

@@ -55,7 +55,7 @@ class InjectionJob {
     const SimulatedRealization realization(reference_.source, reference_.frame, first_injected_realization + index,
                                            settings_.n_replicates);
     for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
-      Stream stream({seed_, index, attempt, Purpose::sealed_answer});
+      Stream stream({seed_, index, attempt, Purpose::injected_effects});
       const std::optional<std::vector<EffectSpec>> effects = draw(plan, realization.drawn(), stream);
       if (!effects) continue;
       auto data = realization.with_effects(*effects, 0, settings_.n_replicates);
