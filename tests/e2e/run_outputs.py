@@ -86,9 +86,9 @@ def ending_of(command, output):
 
 def options(command):
     found = []
-    for section in re.split(r"\n(?=\w+:\n)", help_of(command)):
+    for section in re.split(r"\n(?=\S.*:\n)", help_of(command)):
         group, _, lines = section.partition(":\n")
-        if group in ("Positionals", "Options", "Inputs", "Outputs"):
+        if group != "Subcommands":
             # A description that has no room stands on the next line.
             for line in re.sub(r"\n {10,}", " ", lines).splitlines():
                 if line.strip():
