@@ -7,9 +7,50 @@ as PNG files. Needs Chromium and libjs-vega
 import json
 import pathlib
 import re
+import shutil
+import subprocess
+import sys
+import tempfile
 
 from make_vega_bundle import bundle
-from page_charts import charts_of
+
+SAVE = """<script>
+setTimeout(() => {
+  const charts = {};
+  document.querySelectorAll("figure").forEach((figure) => {
+    const drawn = figure.querySelector("canvas"), picture = document.createElement("canvas");
+    if (!drawn) return;
+    picture.width = drawn.width;
+    picture.height = drawn.height;
+    const context = picture.getContext("2d");
+    context.fillStyle = "#ffffff";
+    context.fillRect(0, 0, picture.width, picture.height);
+    context.drawImage(drawn, 0, 0);
+    charts[figure.querySelector("figcaption").firstChild.textContent] = picture.toDataURL("image/png");
+  });
+  document.body.dataset.saved = btoa(unescape(encodeURIComponent(JSON.stringify(charts))));
+}, 3000);
+</script>"""
+
+
+def charts_of(page: str) -> dict:
+    """The PNG of every chart of an HTML page, by its title."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if not chromium:
+        sys.exit("no Chromium here: tools/install_deps --all installs it")
+    with tempfile.TemporaryDirectory() as name:
+        file = pathlib.Path(name) / "page.html"
+        file.write_text(page.replace("</body>", SAVE + "</body>"), encoding="utf-8")
+        command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", f"--user-data-dir={name}/profile",
+                   "--window-size=1400,30000", "--force-device-scale-factor=1.5", "--virtual-time-budget=20000", "--dump-dom",
+                   file.as_uri()]
+        dom = subprocess.run(command, capture_output=True, text=True, timeout=240, check=True).stdout
+    saved = re.search(r'data-saved="([^"]*)"', dom)
+    if not saved:
+        sys.exit("the page drew nothing")
+    charts = json.loads(base64.b64decode(saved.group(1)))
+    return {title: base64.b64decode(url.split(",", 1)[1]) for title, url in charts.items()}
+
 
 VEGA = pathlib.Path("/usr/share/javascript/vega")
 PALETTE = pathlib.Path(__file__).parents[1] / "src/io/pages/palette.css"

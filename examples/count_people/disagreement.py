@@ -56,7 +56,7 @@ def reconciled(pirsim, scene, stretches, folder, options=()):
         write_measured(folder / "measured.csv", steady_runs(stretches))
         (folder / "steady.yaml").write_text(script_of("door", ("S1", "S2", "S3")))
         subprocess.run([pirsim, "reconcile", "--scene", scene, "--script", folder / "steady.yaml", "--measured",
-                        folder / "measured.csv", "--out", folder, *options], check=True, stdout=subprocess.DEVNULL)
+                        folder / "measured.csv", "-o", folder, *options], check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "report.json").read_text())
 
 

@@ -14,6 +14,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/input_file.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim {
 
@@ -104,8 +105,8 @@ enum class LogClock {
 // What was read: of each sensor when it changed.
 
 namespace log_state {
-inline constexpr std::int32_t off = 0, on = 1, unknown = 2;
-inline constexpr std::int32_t unknown_count = -1;
+inline constexpr std::int32_t off = 0, on = 1, unknown = unknown_bit;
+inline constexpr std::int32_t unknown_count = unknown_people;
 }  // namespace log_state
 
 /// From this moment on. Of readings: from the one with this stamp, the one before being so much earlier.

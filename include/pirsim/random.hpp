@@ -48,7 +48,7 @@ enum class Purpose : std::uint32_t {
   simulated_seed = 201,        ///< seeds of simulated datasets
   reference_parameters = 202,  ///< parameters of effects, from their priors
   analysis = 203,              ///< ties, forests, splits
-  sealed_answer = 204,         ///< what a sealed challenge hides
+  injected_effects = 204,      ///< what a self-test hides
   model_check = 205,           ///< parameters of a fitted effect in the realizations that its model is checked in
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier

@@ -113,9 +113,6 @@ struct Stage {
     injecting_faults,      ///< of the self-test, as all that follows but the last
     judging,
     judging_without,  ///< by a catalogue that lacks `effects`
-    searching_anew,   ///< without held-out trials, in n datasets
-    verified,         ///< n of `of` datasets
-    checking_models,  ///< n of `of`, in n_realizations
     judging_planned,  ///< of a plan: what is planned
     judging_trial,    ///< with `effects`' only element, a trial, once more
     judging_all_again,
@@ -125,7 +122,6 @@ struct Stage {
   };
   What what = What::pilot_runs;
   std::vector<std::string> effects = {};
-  std::size_t n = 0, of = 0, n_realizations = 0;
 };
 
 /// What a caller may tell its user while it waits. Functions may be empty.

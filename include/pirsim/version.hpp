@@ -9,4 +9,7 @@ namespace pirsim {
 [[nodiscard]] std::string git_revision();  ///< of the source at configure time, "unknown" outside a checkout
 [[nodiscard]] std::string compiler();      ///< "GNU 12.2.0 RelWithDebInfo"
 
+/// As outputs tell what made them: "pirsim 0.2.0 (1a2b3c4d)".
+[[nodiscard]] std::string program();
+
 }  // namespace pirsim

@@ -80,7 +80,7 @@ void run(const CalibrateOptions& options) {
   const calibrate::LogDays days = calibrate::days_of(rows, hours);
   const calibrate::About about{options.recipe.filename().string(),
                                options.log.files.front().filename().string(),
-                               "pirsim " + version() + " (" + git_revision() + ")",
+                               program(),
                                hours,
                                days.whole.size(),
                                days.partial,

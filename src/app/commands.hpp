@@ -8,11 +8,9 @@
 namespace pirsim::app {
 
 void add_run_command(CLI::App& app);
-void add_day_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_preview_command(CLI::App& app);
 void add_room_command(CLI::App& app);
-void add_home_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_count_command(CLI::App& app);
@@ -24,21 +22,16 @@ void add_data_command(CLI::App& app);
 void add_coverage_command(CLI::App& app);
 void add_walktest_command(CLI::App& app);
 void add_placements_command(CLI::App& app);
-void add_status_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_reconcile_command(CLI::App& app);
 void add_log_command(CLI::App& app);
 void add_help_command(CLI::App& app);
-/// These two belong to reconcile.
-void add_seal_command(CLI::App& reconcile_command);
-void add_open_command(CLI::App& reconcile_command);
 
 /// In the order of the help.
 inline constexpr std::array all_commands{
-    add_run_command,       add_day_command,      add_check_command,      add_preview_command, add_export_command,
-    add_view_command,      add_room_command,     add_home_command,       add_dataset_command, add_effects_command,
-    add_coverage_command,  add_walktest_command, add_placements_command, add_status_command,  add_merge_command,
-    add_reconcile_command, add_log_command,      add_calibrate_command,  add_count_command,   add_control_command,
-    add_data_command,      add_help_command};
+    add_run_command,        add_check_command,   add_preview_command,   add_export_command,   add_view_command,
+    add_room_command,       add_dataset_command, add_effects_command,   add_coverage_command, add_walktest_command,
+    add_placements_command, add_merge_command,   add_reconcile_command, add_log_command,      add_calibrate_command,
+    add_count_command,      add_control_command, add_data_command,      add_help_command};
 
 }  // namespace pirsim::app

@@ -189,10 +189,9 @@ void control_rows(const ControlOptions& options, Source&& source) {
   if (!options.output.empty()) io::write_text_file(options.output, control::to_csv(costs));
   if (!options.report.empty()) {
     io::Report report = control::control_page(costs, outputs.days(), view_command(options));
-    report.footer = "pirsim " + version() + " (" + git_revision() + ")";
-    for (const std::filesystem::path& file : options.rows.empty() ? options.log.files : options.rows)
-      report.footer += ", " + io::name_of_input(file);
-    if (!options.rule.empty()) report.footer += ", " + io::name_of_input(options.rule);
+    std::vector<std::filesystem::path> files = options.rows.empty() ? options.log.files : options.rows;
+    files.push_back(options.rule);
+    report.footer = made_from(files);
     io::write_report(options.report, report);
   }
   tell_written({{options.output}, {options.light}, {options.schedule}, {options.report}}, options.inputs.verbosity);

@@ -34,9 +34,8 @@ void count(const CountOptions& options) {
   const calibrate::LogCounts counts = calibrate::count_log(counter, LogWindows(log, counter.settings.step_s).rows(),
                                                            calibrate::traits_of(facts_of(log)), options.pass);
   write(options, counts);
-  const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
   if (!options.report.empty())
-    calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), made_by);
+    calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), program());
   tell_written({{options.output}, {options.report}}, options.verbosity);
   std::vector<Issue> warnings;
   if (!counts.warning.empty()) warnings.push_back({Severity::warning, Where{options.counter.string()}, counts.warning});

@@ -8,14 +8,12 @@ namespace pirsim::app {
 namespace {
 
 CLI::App& find_command(CLI::App& parent, const std::string& name) {
-  std::vector<std::string> known;
   for (CLI::App* command : parent.get_subcommands(nullptr)) {
     if (command->check_name(name)) return *command;
-    known.push_back(command->get_name());
   }
   const std::string owner = spoken_name(parent);
   throw Error(ErrorCode::usage, "help: '" + name + "' isn't a command" + (owner.empty() ? "" : " of '" + owner + "'") +
-                                    did_you_mean(name, known));
+                                    did_you_mean(name, offered_commands(parent)));
 }
 
 /// CLI::App::help() would tell of the command that was called, which is `help`.

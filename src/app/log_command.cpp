@@ -64,8 +64,9 @@ std::string title_of(const LogOptions& options) {
 
 void write_report(const Log& log, const LogFacts& facts, const LogOptions& options) {
   io::Report report = io::log_report(log, facts, title_of(options));
-  report.footer = "pirsim " + version() + " (" + git_revision() + ")";
-  for (const InputFile& file : log.files) report.footer += ", " + io::name_of_input(file.path);
+  std::vector<std::filesystem::path> files;
+  for (const InputFile& file : log.files) files.emplace_back(file.path);
+  report.footer = made_from(files);
   io::write_report(options.report, report);
 }
 
@@ -91,7 +92,7 @@ void add_log_command(CLI::App& app) {
   CLI::App& command = add_command(app, "log", "read a log of real motion sensors, and say what it tells", R"(
   pirsim log week.csv                                              form, sensors, times, and what they tell
   pirsim log week.csv --print-map > map.yaml                       a map to start from: which column is which sensor
-  pirsim log week.csv --map map.yaml --window 30 -o rows.csv       rows of pirsim, empty where nothing is known
+  pirsim log week.csv --map map.yaml --step 30 -o rows.csv         rows of pirsim, empty where nothing is known
   pirsim log week.csv --report week.html                           a page: the days as time lines
 )");
   const auto options = std::make_shared<LogOptions>();
@@ -104,8 +105,8 @@ void add_log_command(CLI::App& app) {
   command.add_option("--from", options->from, "local time from which it is read")->option_text("TIME");
   command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
   command
-      .add_option("--window", options->window_s,
-                  "length of a row's window (default: 30, or the log's interval if longer)")
+      .add_option("--step,--window", options->window_s,
+                  "length of a row (default: 30, or the log's interval if longer)")
       ->option_text("SECONDS");
   offer_output(command, output_names, options->output, "rows, .csv, .csv.gz or .csv.zst", io::table_endings());
   offer_output(command, "--report", options->report, "a page with the days as time lines, .html", {".html"});

@@ -28,12 +28,12 @@ constexpr const char* first_steps = R"(Examples:
 )";
 
 std::string version_text() {
-  return "pirsim " + version() + " (" + git_revision() + "), " + compiler() + ", Embree " + rt::embree_version() + " " +
-         rt::instruction_set();
+  return program() + ", " + compiler() + ", Embree " + rt::embree_version() + " " + rt::instruction_set();
 }
 
 int run_command_line(int argc, char** argv) {
   Command app{"Headless simulator of passive-infrared motion sensors", "pirsim"};
+  app.formatter(help_formatter());
   app.footer(first_steps);
   app.set_version_flag("-V,--version", version_text);
   app.require_subcommand(0, 1);

@@ -14,6 +14,7 @@ namespace pirsim::app {
 namespace {
 
 struct MergeOptions {
+  enum class Action { merge, status } action = Action::merge;
   std::filesystem::path folder;  ///< with shards
   std::filesystem::path output;
   std::filesystem::path summary;
@@ -43,7 +44,18 @@ std::vector<std::string> trial_ids(const ScriptSpec& script) {
   return ids;
 }
 
+void tell_status(const MergeOptions& options) {
+  const std::vector<studies::ShardReport> shards = [&] {
+    const Progress progress({.what = "reading the shards of " + options.folder.string()}, options.verbosity);
+    return studies::campaign_status(options.folder);
+  }();
+  if (options.verbosity != Verbosity::quiet) std::cerr << studies::to_text(shards);
+  if (const std::string rest = studies::array_specification(shards); !rest.empty()) std::cout << rest << '\n';
+  require_written();
+}
+
 void merge(const MergeOptions& options) {
+  if (options.action == MergeOptions::Action::status) return tell_status(options);
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing");
   ScriptSpec script;
   std::optional<io::AtomicFile> file;
@@ -73,13 +85,8 @@ void merge(const MergeOptions& options) {
   tell(merged.notes, options.verbosity);
 }
 
-}  // namespace
-
-void add_merge_command(CLI::App& app) {
-  Command& command = add_command(app, "merge", "join shards into one file, identical to a single process's", R"(
-  pirsim merge out -o rows.csv.zst
-  pirsim merge out -o rows.csv --script study.yaml --summary table.md
-)");
+/// Returns --status.
+CLI::Option* offer_merge(Command& command) {
   const auto options = std::make_shared<MergeOptions>();
   CLI::Option* folder = command.add_option("DIR", options->folder, "folder with the shards")->required();
   command.files.add_inputs([options] {
@@ -94,14 +101,34 @@ void add_merge_command(CLI::App& app) {
     if (options->output.empty()) return std::vector<NamedFile>{};
     return std::vector<NamedFile>{{"the manifest of -o", io::manifest_path(options->output)}};
   });
-  offer_output(command, "--summary", options->summary,
-               "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script",
-               summary_endings());
-  offer_input_file(command, "--script", options->script, "the shards' script, for the summary");
-  command.add_option("--set", options->overrides, "as for the shards")
-      ->option_text("KEY=VALUE")
-      ->allow_extra_args(false);
+  CLI::Option* summary = offer_output(
+      command, "--summary", options->summary,
+      "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script", summary_endings());
+  CLI::Option* script = offer_input_file(command, "--script", options->script, "the shards' script, for the summary");
+  CLI::Option* set = command.add_option("--set", options->overrides, "as for the shards")
+                         ->option_text("KEY=VALUE")
+                         ->allow_extra_args(false);
+  CLI::Option* status = command.add_flag_callback(
+      "--status", [options] { options->action = MergeOptions::Action::status; },
+      "only tell which shards are missing or broken, and what is left as Slurm's --array");
+  for (CLI::Option* other : {rows, summary, script, set}) status->excludes(other);
   command.callback([options] { merge(*options); });
+  return status;
+}
+
+constexpr const char* examples = R"(
+  pirsim merge out --status                                        what is there; what is left, as Slurm's --array
+  pirsim merge out --status -q                                     only what is left
+  pirsim merge out -o rows.csv.zst
+  pirsim merge out -o rows.csv --script study.yaml --summary table.md
+)";
+
+}  // namespace
+
+void add_merge_command(CLI::App& app) {
+  static_cast<void>(
+      offer_merge(add_command(app, "merge", "join shards into one file, identical to a single process's", examples)));
+  offer_merge(add_old_command(app, "status", "the same as merge --status", examples))->add_result("true");
 }
 
 }  // namespace pirsim::app

@@ -22,6 +22,11 @@ std::string take_standard_input(std::string& file) {
   return {};
 }
 
+/// Also of an option that isn't in the help, which CLI11 gives no name.
+std::string name_of(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().front();
+}
+
 /// As it is mostly typed: "-o".
 std::string told_name(const CLI::Option& option) {
   if (option.get_positional()) return "the input";
@@ -44,13 +49,6 @@ void require_one_standard_input(const CLI::App& command) {
   }
 }
 
-void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
-  if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
-  const std::string spoken = spoken_name(command);
-  throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") +
-                                    " FILE is missing; see pirsim " + (spoken.empty() ? "" : spoken + ' ') + "--help");
-}
-
 /// Functions that offer an option to several commands give it one description. Others mean something of their own.
 bool mean_the_same(const CLI::Option& one, const CLI::Option& other) {
   return one.get_description() == other.get_description();
@@ -65,7 +63,7 @@ void take_from_parent(CLI::App& command) {
   CLI::App& parent = *command.get_parent();
   for (CLI::Option* option : parent.get_options(nullptr)) {
     if (option->count() == 0 || is_about_pirsim(parent, option)) continue;
-    const std::string name = option->get_name();
+    const std::string name = name_of(*option);
     CLI::Option* own = command.get_option_no_throw(name);
     if (own == nullptr) throw Error(ErrorCode::usage, name + " is not an option of '" + spoken_name(command) + "'");
     if (!mean_the_same(*option, *own)) {
@@ -92,9 +90,11 @@ std::string explain_word(const CLI::App& app, const std::string& word) {
   const bool is_option = word.size() > 1 && word.front() == '-';
   std::vector<std::string> known;
   if (is_option) {
-    for (const CLI::Option* option : command->get_options(nullptr)) known.push_back(option->get_name());
+    for (const CLI::Option* option : command->get_options(nullptr)) {
+      if (!option->get_group().empty()) known.push_back(option->get_name());
+    }
   } else {
-    for (const CLI::App* other : command->get_subcommands(nullptr)) known.push_back(other->get_name());
+    known = offered_commands(*command);
   }
   const std::string spoken = spoken_name(*command);
   const std::string hint = command->get_option_no_throw("--scene") == nullptr ? std::string() : meant_as(word);
@@ -154,6 +154,14 @@ void offer_scene_file(CLI::App& command, Inputs& inputs) {
 }
 
 }  // namespace
+
+std::vector<std::string> offered_commands(const CLI::App& parent) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : parent.get_subcommands(nullptr)) {
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  }
+  return names;
+}
 
 CLI::Option* as_input(CLI::Option* option) {
   return option->description(option->get_description() + said_of_inputs)
@@ -254,7 +262,7 @@ std::vector<std::string> model_options(const Inputs& inputs) {
 }
 
 void offer_tracer(CLI::App& command, Inputs& inputs) {
-  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
+  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->group("");
 }
 
 void offer_seed(CLI::App& command, Inputs& inputs) {
@@ -323,6 +331,38 @@ Command& add_command(CLI::App& parent, const std::string& name, const std::strin
   return *command;
 }
 
+Command& add_old_command(CLI::App& parent, const std::string& name, const std::string& what,
+                         const std::string& examples) {
+  Command& command = add_command(parent, name, what, examples);
+  command.group("");
+  return command;
+}
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() {
+  class Formatter : public CLI::Formatter {
+    [[nodiscard]] std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+      std::string names = CLI::Formatter::make_option_name(option, is_positional) + ',';
+      for (const std::string old : {"--out", "--print-script", "--window"}) {
+        if (const auto at = names.find(',' + old + ','); at != std::string::npos) names.erase(at, old.size() + 1);
+      }
+      names.pop_back();
+      return names;
+    }
+    /// What goes without what, a message says to whom it concerns.
+    [[nodiscard]] std::string make_option_opts(const CLI::Option* option) const override {
+      return option->get_expected_max() == 0 ? "" : CLI::Formatter::make_option_opts(option);
+    }
+  };
+  return std::make_shared<Formatter>();
+}
+
+void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
+  if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
+  const std::string spoken = spoken_name(command);
+  throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") +
+                                    " FILE is missing; see pirsim " + (spoken.empty() ? "" : spoken + ' ') + "--help");
+}
+
 void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,
              Needs needs) {
   command.callback([&command, inputs = std::move(inputs), work = std::move(work), needs] {
@@ -341,7 +381,7 @@ void pass_options_on(CLI::App& app) {
 
 std::string explain(const CLI::App* app, const CLI::Error& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    if (const CLI::Option* option = repeated_option(*app)) return "error: " + option->get_name() + " is given twice\n";
+    if (const CLI::Option* option = repeated_option(*app)) return "error: " + name_of(*option) + " is given twice\n";
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
     if (std::string text = explain_conversion(*app, error.what()); !text.empty()) return text;

@@ -79,7 +79,7 @@ void offer_scene(CLI::App& command, Inputs& inputs);
 void offer_study(CLI::App& command, Inputs& inputs);
 /// What of it makes the model what it is, as the user typed it: a command with these words reads the same.
 [[nodiscard]] std::vector<std::string> model_options(const Inputs& inputs);
-/// For commands that trace rays by load().
+/// For commands that trace rays by load(); not in the help: a switch for who works on tracers.
 void offer_tracer(CLI::App& command, Inputs& inputs);
 void offer_seed(CLI::App& command, Inputs& inputs);
 /// Of an option whose value is 64 bits wide: CLI11 takes -1 for a large number there, and cuts what is too large.
@@ -95,7 +95,14 @@ void offer_map_report(CLI::App& command, std::filesystem::path& report);
 /// A subcommand. `examples` are whole lines, and stand at the end of its help.
 [[nodiscard]] Command& add_command(CLI::App& parent, const std::string& name, const std::string& what,
                                    const std::string& examples);
+/// A command's word of an earlier version: accepted, but not in the help.
+[[nodiscard]] Command& add_old_command(CLI::App& parent, const std::string& name, const std::string& what,
+                                       const std::string& examples);
+/// As CLI11's, without what excludes a flag, and without options' names of an earlier version, which are accepted.
+[[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter();
 enum class Needs { scene, scene_and_script };
+/// Throws Error(usage) if one of them is missing.
+void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs);
 /// Does the work if the command itself is called, not one of its subcommands. It refuses to without what it needs.
 void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,
              Needs needs = Needs::scene_and_script);
@@ -105,6 +112,8 @@ void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::funct
 void pass_options_on(CLI::App& app);
 /// CLI11's message in one or two lines, but for what pirsim says in its own words.
 [[nodiscard]] std::string explain(const CLI::App* app, const CLI::Error& error);
+/// Names of the subcommands in the help.
+[[nodiscard]] std::vector<std::string> offered_commands(const CLI::App& parent);
 /// As a user types it, without "pirsim": "reconcile plan".
 [[nodiscard]] std::string spoken_name(const CLI::App& command);
 

@@ -40,6 +40,8 @@ struct ReconcileOptions {
   int max_effects = 3;
 };
 
+constexpr const char* folder_names = "-o,--output,--out";
+
 struct PlanOptions {
   std::filesystem::path output = "reconcile_plan";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
@@ -50,7 +52,7 @@ struct SelftestOptions {
   std::filesystem::path output = "reconcile_selftest";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::uint32_t nulls = 60, injected = 10, beyond = 0, pairs = 0, out_of_catalogue = 0, verified = 0;
+  std::uint32_t nulls = 60, injected = 10, pairs = 0;
   reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
 };
 
@@ -123,11 +125,8 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
                                        options.runs,
                                        options.nulls,
                                        options.injected,
-                                       options.beyond,
                                        options.pairs,
-                                       options.out_of_catalogue,
-                                       options.leave_out,
-                                       options.verified};
+                                       options.leave_out};
   require_writable(options.output);
   settings.injected_folder = settings.analysis.table_folder / "injected";
   AnalysisTeller teller(inputs.verbosity);
@@ -135,9 +134,7 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
   teller.finish();
   std::cout << reconcile::to_markdown(result);
   require_written();
-  const reconcile::Geometry geometry =
-      analysis.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
-  reconcile::write_selftest(options.output, result, geometry, made_by(inputs));
+  reconcile::write_selftest(options.output, result, made_by(inputs));
   tell_written({{options.output}}, inputs.verbosity);
 }
 
@@ -232,9 +229,9 @@ void add_selftest_command(CLI::App& reconcile_command) {
   const auto options = std::make_shared<SelftestOptions>();
   offer_study(command, *inputs);
   using reconcile::LeaveOut;
-  offer_output_folder(command, "-o,--out", options->output,
+  offer_output_folder(command, folder_names, options->output,
                       "folder for rates and pictures (default: reconcile_selftest)",
-                      {"selftest.csv", "selftest.md", "selftest.html", "targets.md", "table"});
+                      {"selftest.csv", "selftest.md", "selftest.html", "table"});
   offer_kind(command, options->kind, "what faults are injected into");
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
@@ -242,24 +239,12 @@ void add_selftest_command(CLI::App& reconcile_command) {
   command.add_option("--nulls", options->nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
   command.add_option("--injected", options->injected, "datasets of every effect and strength (default: 10)")
       ->option_text("N");
-  command.add_option("--beyond", options->beyond, "of every effect, stronger than any in the table (default: 0)")
-      ->option_text("N");
   command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
   command
-      .add_option("--out-of-catalogue", options->out_of_catalogue,
-                  "datasets of each out-of-catalogue fault (default: 0)")
-      ->option_text("N");
-  command
-      .add_option("--verify", options->verified,
-                  "datasets of each group whose name is applied and judged on held-out trials (default: 0)")
-      ->option_text("N");
-  command
       .add_option("--leave-out", options->leave_out,
-                  "judge by catalogues that lack the effect, too: none, effects, or variants (also those that lack "
-                  "one variant)")
+                  "effects: judge by catalogues that lack the effect, too (default: none)")
       ->option_text("HOW")
-      ->transform(one_of<LeaveOut>(
-          {{"none", LeaveOut::none}, {"effects", LeaveOut::effects}, {"variants", LeaveOut::variants}}));
+      ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"effects", LeaveOut::effects}}));
   offer_analysis(command, *analysis);
   on_call(command, inputs,
           [analysis, options](const Inputs& given) { reconcile_selftest(given, *analysis, *options); });
@@ -275,7 +260,7 @@ void add_plan_command(CLI::App& reconcile_command) {
   const auto analysis = std::make_shared<AnalysisOptions>();
   const auto options = std::make_shared<PlanOptions>();
   offer_study(command, *inputs);
-  offer_output_folder(command, "-o,--out", options->output, "folder for page and tables (default: reconcile_plan)",
+  offer_output_folder(command, folder_names, options->output, "folder for page and tables (default: reconcile_plan)",
                       {"plan.csv", "plan.html", "plan.json", "table"});
   offer_kind(command, options->kind, "what is to be measured");
   command.add_option("--runs", options->runs, "planned runs of every trial (default: 1)")
@@ -301,7 +286,8 @@ void add_reconcile_command(CLI::App& app) {
   offer_input_file(command, "--measured", options->measured, "rows, sums or a log from the real room");
   offer_input_file(command, "--map", options->map, "what a log's columns mean (pirsim log --print-map)");
   command.add_option("--time-zone", options->time_zone, "where a log's room is, as Europe/Berlin")->option_text("ZONE");
-  offer_output_folder(command, "-o,--out", options->output, "folder for report and patched script (default: reconcile)",
+  offer_output_folder(command, folder_names, options->output,
+                      "folder for report and patched script (default: reconcile)",
                       {reconcile::report_files.begin(), reconcile::report_files.end()});
   command
       .add_option("--holdout", options->holdout,
@@ -313,7 +299,7 @@ void add_reconcile_command(CLI::App& app) {
       ->check(CLI::Range(1, 5));
   offer_analysis(command, *analysis);
   on_call(command, inputs, [analysis, options](const Inputs& given) { reconcile_data(given, *analysis, *options); });
-  for (const auto add : {add_selftest_command, add_plan_command, add_seal_command, add_open_command}) add(command);
+  for (const auto add : {add_selftest_command, add_plan_command}) add(command);
 }
 
 }  // namespace pirsim::app

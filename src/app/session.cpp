@@ -194,9 +194,11 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }
 
-std::string made_by(const Inputs& inputs) {
-  std::string text = "pirsim " + version() + " (" + git_revision() + ")";
-  for (const std::filesystem::path& file : {inputs.scene, inputs.marks, inputs.script})
+std::string made_by(const Inputs& inputs) { return made_from({inputs.scene, inputs.marks, inputs.script}); }
+
+std::string made_from(const std::vector<std::filesystem::path>& files) {
+  std::string text = program();
+  for (const std::filesystem::path& file : files)
     if (!file.empty()) text += ", " + io::name_of_input(file);
   return text;
 }

@@ -72,6 +72,8 @@ struct WrittenFile {
 void tell_written(const std::vector<WrittenFile>& files, Verbosity verbosity);
 /// "pirsim 0.2.0 (1a2b3c4), room.gltf, marks.yaml, study.yaml"
 [[nodiscard]] std::string made_by(const Inputs& inputs);
+/// The program and the files' names; an empty path is none.
+[[nodiscard]] std::string made_from(const std::vector<std::filesystem::path>& files);
 
 /// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
 struct ClosedPipe {};

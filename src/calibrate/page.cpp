@@ -50,17 +50,17 @@ io::ReportSection statistics_section(const Calibration& calibration) {
   section.heading = "Is your room like these?";
   section.paragraphs = {
       calibration.verdict == Verdict::none_like_it
-          ? "No: only " + fixed(100.0 * calibration.p, 0) +
-                " % of the rooms differ as much from the others as your log does. Widen the range of what is outside, "
+          ? "No: only " + percent(calibration.p) +
+                " of the rooms differ as much from the others as your log does. Widen the range of what is outside, "
                 "or ask what is in the room that the recipe hasn't got: a pet, a fan, another kind of sensor, a sensor "
                 "that died."
-          : "Nothing speaks against it: " + fixed(100.0 * calibration.p, 0) +
-                " % of the rooms differ as much from the others as your log does. That doesn't prove that the room is "
+          : "Nothing speaks against it: " + percent(calibration.p) +
+                " of the rooms differ as much from the others as your log does. That doesn't prove that the room is "
                 "among them."};
   io::Table table{{"of a day", "your log", "90 % of rooms", "by weight", "as far out"}, {}};
   for (const Statistic& one : calibration.statistics) {
-    table.rows.push_back({one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms), plain(one.of_weighty),
-                          fixed(100.0 * one.p, 0) + " %"});
+    table.rows.push_back(
+        {one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms), plain(one.of_weighty), percent(one.p)});
     if (!one.advice.empty())
       section.paragraphs.push_back("In these rooms, " + one.advice + " brings \"" + one.name +
                                    "\" nearer to your log.");
@@ -81,7 +81,7 @@ io::ReportSection parameters_section(const Calibration& calibration) {
   io::Table table{{"parameter", "90 % of rooms", "by weight", "mean", "by weight", "narrowed"}, {}};
   for (const ParameterRange& one : calibration.parameters) {
     table.rows.push_back({one.name, plain(one.before), plain(one.after), plain(one.mean_before), plain(one.mean_after),
-                          fixed(100.0 * one.narrowed, 0) + " %"});
+                          percent(one.narrowed)});
   }
   section.tables.push_back(std::move(table));
   return section;

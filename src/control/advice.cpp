@@ -73,7 +73,7 @@ std::string compared(const LightCosts& light, const DelayCosts& at) {
 std::string dark_all_the_same(const DelayCosts& at) {
   constexpr double worth_a_word = 0.05;  // assumed (0.01 to 0.2)
   if (at.dark_share.value < worth_a_word) return {};
-  return " Somebody is in the dark for " + fixed(100.0 * at.dark_share.value, 0) + " % of their time all the same.";
+  return " Somebody is in the dark for " + percent(at.dark_share.value) + " of their time all the same.";
 }
 
 std::string shown(const LightCosts& light, const DelayCosts& at) {

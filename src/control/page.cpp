@@ -13,7 +13,7 @@ namespace pirsim::control {
 namespace {
 
 std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }
-std::string share(double value) { return fixed(100.0 * value, value < 0.1 ? 1 : 0) + " %"; }
+std::string share(double value) { return percent(value, value < 0.1 ? 1 : 0); }
 std::string range(const Figure& figure, double scale, int digits) {
   if (!figure.over_days) return "";
   return " (" + fixed(scale * figure.over_days->low, digits) + " to " + fixed(scale * figure.over_days->high, digits) +
@@ -308,18 +308,9 @@ io::DaysChart LitDays::chart() const {
   chart.ticks = has_clock_ ? io::DaysChart::Ticks::clock : io::DaysChart::Ticks::seconds;
   using Day = io::DaysChart;
   const auto runs_of = [&](const std::vector<Bin>& bins, std::size_t light, auto level_of) {
-    std::vector<Day::Run> runs;
-    for (std::size_t bin = 0; bin < n_bins; ++bin) {
-      const int level = level_of(bins[bin * names_.size() + light]);
-      if (level == 0) continue;
-      const int at = static_cast<int>(bin);
-      if (!runs.empty() && runs.back().to == at && runs.back().level == level) {
-        ++runs.back().to;
-      } else {
-        runs.push_back({at, at + 1, level});
-      }
-    }
-    return runs;
+    std::vector<std::int32_t> levels;
+    for (std::size_t bin = 0; bin < n_bins; ++bin) levels.push_back(level_of(bins[bin * names_.size() + light]));
+    return Day::runs_of(levels);
   };
   for (const auto& [key, bins] : days_) {
     const auto& [replicate, trial, date] = key;
@@ -331,13 +322,7 @@ io::DaysChart LitDays::chart() const {
     Day::Day day{has_clock_ ? of_date : run, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
       day.lines.push_back({names_[i], runs_of(bins, i, [](const Bin& bin) {
-                             const double lit = bin.lit / bin.known;
-                             return bin.known == 0.0 ? Day::unknown
-                                    : lit <= 0.0     ? 0
-                                    : lit <= 0.05    ? 1
-                                    : lit <= 0.2     ? 2
-                                    : lit <= 0.5     ? 3
-                                                     : 4;
+                             return bin.known == 0.0 ? Day::unknown : Day::level_of(bin.lit / bin.known);
                            })});
       if (!knows_people_) continue;
       day.lines.push_back({"people", runs_of(bins, i, [](const Bin& bin) { return bin.people; }), Day::Shows::people});

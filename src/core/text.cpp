@@ -190,6 +190,8 @@ std::string fixed(double value, int digits) {
   return out.str();
 }
 
+std::string percent(double share, int digits) { return fixed(100.0 * share, digits) + " %"; }
+
 std::string shortest_number(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};

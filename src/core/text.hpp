@@ -50,6 +50,8 @@ inline constexpr std::string_view begin_of_list = "; there are ";
 
 /// With so many digits after the point.
 [[nodiscard]] std::string fixed(double value, int digits);
+/// Of a share, with so many digits after the point: "12 %".
+[[nodiscard]] std::string percent(double share, int digits = 0);
 /// With as many digits as tell it from every other number.
 [[nodiscard]] std::string shortest_number(double value);
 

@@ -120,19 +120,18 @@ std::string data_package(const Description& described, const std::map<std::strin
     one["hash"] = "sha256:" + sha256(table.text);
     resources.push_back(std::move(one));
   }
-  const Json package{
-      {"profile", "data-package"},
-      {"name", slug(described.recipe.name)},
-      {"title", described.recipe.name},
-      {"description",
-       "Simulated passive-infrared motion sensors in rooms with people, and the true number of people. "
-       "Made by pirsim; README.md has the figures."},
-      {"version", version()},
-      {"keywords", {"passive infrared", "occupancy", "people counting", "simulation"}},
-      {"contributors", {{{"title", "pirsim " + version() + " (" + git_revision() + ")"}, {"role", "wrangler"}}}},
-      {"provenance", described.provenance},
-      {"recipe", {{"path", "recipe.yaml"}, {"hash", "sha256:" + sha256(described.recipe.text)}}},
-      {"resources", std::move(resources)}};
+  const Json package{{"profile", "data-package"},
+                     {"name", slug(described.recipe.name)},
+                     {"title", described.recipe.name},
+                     {"description",
+                      "Simulated passive-infrared motion sensors in rooms with people, and the true number of people. "
+                      "Made by pirsim; README.md has the figures."},
+                     {"version", version()},
+                     {"keywords", {"passive infrared", "occupancy", "people counting", "simulation"}},
+                     {"contributors", {{{"title", program()}, {"role", "wrangler"}}}},
+                     {"provenance", described.provenance},
+                     {"recipe", {{"path", "recipe.yaml"}, {"hash", "sha256:" + sha256(described.recipe.text)}}},
+                     {"resources", std::move(resources)}};
   return package.dump(1) + '\n';
 }
 

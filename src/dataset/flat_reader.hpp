@@ -1,4 +1,4 @@
-// Ranges of flats as YAML: homes of a recipe, and the options of `pirsim home`.
+// Ranges of flats as YAML: homes of a recipe, and the options of `pirsim room --home`.
 #pragma once
 
 #include "io/read/yaml_map.hpp"

@@ -14,11 +14,6 @@ namespace {
 
 constexpr std::array all_parts{Part::train, Part::validation, Part::test_days, Part::test_rooms};
 
-std::string percent(double share) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(1) << 100.0 * share << " %";
-  return text.str();
-}
 std::string hours(double seconds) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(seconds < 360'000.0 ? 1 : 0) << seconds / 3600.0;
@@ -61,7 +56,7 @@ std::string table_of_parts(const Description& described) {
     const double occupied = sums.rows == 0 ? 0.0 : static_cast<double>(sums.occupied) / static_cast<double>(sums.rows);
     text += "| `" + name_of(part) + "` | " + std::to_string(sums.rooms.size()) + " | " + std::to_string(sums.days) +
             (sums.failed > 0 ? " (" + std::to_string(sums.failed) + " without rows)" : "") + " | " +
-            hours(sums.seconds) + " | " + std::to_string(sums.rows) + " | " + percent(occupied) + " | " +
+            hours(sums.seconds) + " | " + std::to_string(sums.rows) + " | " + percent(occupied, 1) + " | " +
             std::to_string(sums.arrivals) + " |\n";
   }
   return text;
@@ -85,9 +80,9 @@ std::string table_of_counts(const Description& described) {
   std::string text = "| people | share of rows | rows with motion at any sensor |";
   text += has_readings ? " 30 s with motion at any sensor |\n|---:|---:|---:|---:|\n" : "\n|---:|---:|---:|\n";
   for (const auto& [people, count] : rows) {
-    text += "| " + std::to_string(people) + " | " + percent(static_cast<double>(count.all) / static_cast<double>(all)) +
-            " | " + percent(share(count)) + " |" + (has_readings ? ' ' + percent(share(readings[people])) + " |" : "") +
-            '\n';
+    text += "| " + std::to_string(people) + " | " +
+            percent(static_cast<double>(count.all) / static_cast<double>(all), 1) + " | " + percent(share(count), 1) +
+            " |" + (has_readings ? ' ' + percent(share(readings[people]), 1) + " |" : "") + '\n';
   }
   return text;
 }
@@ -183,9 +178,8 @@ std::string readme(const Description& described) {
             " times.\n\n";
   std::string command = "pirsim dataset recipe.yaml -o DIR";
   for (const std::string& change : recipe.overrides) command += " --set '" + change + "'";
-  text += "## How it was made, and how to cite it\n" + markdown_code(command) + " of pirsim " + version() + " (" +
-          git_revision() +
-          ") makes the same bytes again. Cite pirsim, a headless simulator of passive-infrared motion "
+  text += "## How it was made, and how to cite it\n" + markdown_code(command) + " of " + program() +
+          " makes the same bytes again. Cite pirsim, a headless simulator of passive-infrared motion "
           "sensors, version " +
           version() + ", with the recipe's hash:\n\n    " + described.provenance + '\n';
   return text;

@@ -73,7 +73,7 @@ RoomKind read_kind(io::YamlMap& map) {
   enum class Word { office, meeting, home };
   const Word word = map.choice<Word>("kind", Word::office,
                                      {{"office", Word::office}, {"meeting", Word::meeting}, {"home", Word::home}});
-  if (word == Word::home) map.faults().error(map.where("kind"), "kind: a home is drawn by `pirsim home`");
+  if (word == Word::home) map.faults().error(map.where("kind"), "kind: a home is drawn by `pirsim room --home`");
   return word == Word::meeting ? RoomKind::meeting : RoomKind::office;
 }
 

@@ -64,8 +64,7 @@ std::string provenance_of(const RecipeSpec& recipe, const std::map<OwnScene, Sce
     }
     if (group.scenes.empty()) add_sensors(print, group, options);
   }
-  return text + ", sensors " + print.digest().substr(0, 16) + ", pirsim " + version() + " (" + git_revision() + "), " +
-         compiler();
+  return text + ", sensors " + print.digest().substr(0, 16) + ", " + program() + ", " + compiler();
 }
 
 /// PIR1, PIR2, ..., as many as a drawn room may have.

@@ -89,7 +89,7 @@ class Doubts {
     if (on >= few) return std::nullopt;
     const auto* meant = std::ranges::find_if(readings, [&](const Reading& one) { return share_on_floor(one) >= most; });
     if (on > 0.0 && meant == readings.end()) return std::nullopt;
-    return (on > 0.0 ? "only " + fixed(100.0 * on, 0) + " % of the positions are over the floor"
+    return (on > 0.0 ? "only " + percent(on) + " of the positions are over the floor"
                      : std::string("nobody is ever over the floor")) +
            ": they span x " + fixed(lower_.x, 2) + " to " + fixed(upper_.x, 2) + ", z " + fixed(lower_.y, 2) + " to " +
            fixed(upper_.y, 2) + ", the floor x " + fixed(floor_.lower().x, 2) + " to " + fixed(floor_.upper().x, 2) +

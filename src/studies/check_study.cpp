@@ -167,8 +167,7 @@ void print_areas(std::ostream& out, const SceneSpec& scene) {
 std::string habit_in_words(const DoorSpec& door) {
   if (door.state == DoorState::open) return "always open";
   if (door.state == DoorState::shut) return "shut behind whoever goes through";
-  return "shut after " + fixed(100.0 * door.shut_share, 0) + " % of passes, else open for " +
-         fixed(door.stands_open_s, 0) + " s";
+  return "shut after " + percent(door.shut_share) + " of passes, else open for " + fixed(door.stands_open_s, 0) + " s";
 }
 
 /// What a leaf hides and to where it turns depends on all of this; where it leads is known by areas.

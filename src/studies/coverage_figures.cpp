@@ -149,8 +149,8 @@ std::string to_text(const CoverageMap& map, const CoverageFigures& figures, cons
   line("all", figures.all);
   if (!areas.empty()) out << "  not seen of each area by all sensors, and by its own:\n";
   for (const AreaCoverage& area : areas) {
-    out << "    " << area.area << ": " << fixed(100.0 * area.blind_fraction, 1) << " %, "
-        << (area.blind_to_its_own ? fixed(100.0 * *area.blind_to_its_own, 1) + " %" : "no sensor") << '\n';
+    out << "    " << area.area << ": " << percent(area.blind_fraction, 1) << ", "
+        << (area.blind_to_its_own ? percent(*area.blind_to_its_own, 1) : "no sensor") << '\n';
   }
   return out.str();
 }

@@ -24,7 +24,7 @@ double hours_of(const std::string& clock) {
 
 std::string count_of(int n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
-std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
+std::string percents(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
 
 }  // namespace
 
@@ -173,7 +173,7 @@ io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     if (bins_[k].windows == 0.0) continue;
     const double share = bins_[k].motion[sensor] / bins_[k].windows;
-    line.points.push_back({hour_of(k), share, {}, {}, time_of(hour_of(k)) + ": " + percent(share) + " %"});
+    line.points.push_back({hour_of(k), share, {}, {}, time_of(hour_of(k)) + ": " + percents(share) + " %"});
   }
   chart.lines.push_back(std::move(line));
   return chart;
@@ -197,7 +197,7 @@ io::GridChart DayReport::count_chart() const {
         continue;
       }
       const double share = count.motion[i] / count.windows[i];
-      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows[i], 0) + " rows"});
+      chart.cells.push_back({100.0 * share, percents(share), "of " + fixed(count.windows[i], 0) + " rows"});
     }
   }
   return chart;

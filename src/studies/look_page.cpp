@@ -149,7 +149,7 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
                ", response of the sensors: " + responses_in_words(model.scene(), model.script().sensing);
   const TrialSpec& trial = model.script().trials[request.run % model.script().trials.size()];
   if (!trial.schedule && !trial.occupancy && !trial.people.empty()) page.first_person = trial.people.front().id;
-  page.made_by = "pirsim " + version() + " (" + git_revision() + ")";
+  page.made_by = program();
   page.sensors = page_sensors(model, film);
   page.run = std::move(film.run);
   page.rows = std::move(film.rows);

@@ -68,8 +68,7 @@ std::string about_light(const PlacementLightSpec& light) {
 }
 
 std::vector<std::string> in_columns(const PlacementLight& light) {
-  return {fixed(light.false_offs_an_hour(), 3), fixed(100.0 * light.dark_share(), 2) + " %",
-          fixed(light.lit_empty_h, 1)};
+  return {fixed(light.false_offs_an_hour(), 3), percent(light.dark_share(), 2), fixed(light.lit_empty_h, 1)};
 }
 
 /// A row a set and area.
@@ -96,14 +95,13 @@ io::Table ranking(const std::vector<PlacementScore>& scores, const PlacementSpec
     table.headings.insert(table.headings.end(), {"false-offs an hour", "in the dark", "lit and empty, h"});
   table.headings.insert(table.headings.end(), {"floor: target seen, m²", "target not seen", "overlap",
                                                "seats at work: noticed", "surely", "at work: deaf", "at work: unseen"});
-  const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
     std::vector<std::string> row{std::to_string(i + 1), s.set.id};
     if (spec.light) {
       for (std::string& cell : in_columns(s.light)) row.push_back(std::move(cell));
     }
-    row.insert(row.end(), {fixed(s.seen_area_m2, 2), percent(s.blind_fraction), percent(s.overlap),
+    row.insert(row.end(), {fixed(s.seen_area_m2, 2), percent(s.blind_fraction, 1), percent(s.overlap, 1),
                            std::to_string(s.at_work.noticed.size()), std::to_string(s.at_work.surely.size()),
                            std::to_string(s.at_work.deaf.size()), std::to_string(s.at_work.unseen.size())});
     table.rows.push_back(std::move(row));

@@ -29,7 +29,7 @@ std::string gain_by_seats(const PlacementSearch& search) {
 /// "0.31 false-offs an occupied hour, 1.2 % of it dark; with even spacing 0.52, 2.0 %"
 std::string gain_by_light(const PlacementSearch& search) {
   const auto told = [](const PlacementLight& light, const std::string& offs, const std::string& dark) {
-    return fixed(light.false_offs_an_hour(), 3) + offs + ", " + fixed(100.0 * light.dark_share(), 2) + " %" + dark;
+    return fixed(light.false_offs_an_hour(), 3) + offs + ", " + percent(light.dark_share(), 2) + dark;
   };
   return told(search.found.light, " false-offs an occupied hour", " of it dark") + "; with even spacing " +
          told(search.even.light, "", "");

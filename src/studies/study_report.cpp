@@ -52,16 +52,15 @@ std::optional<double> block_mean(const FloorGrid& grid, Count count, std::size_t
 }
 
 std::vector<std::string> row_of(const std::string& name, const MapFigures& f) {
-  return {name, fixed(f.mean_step, 1), std::to_string(f.greatest_step), fixed(100.0 * f.blind_fraction, 1) + " %",
+  return {name, fixed(f.mean_step, 1), std::to_string(f.greatest_step), percent(f.blind_fraction, 1),
           fixed(f.seen_area_m2, 2)};
 }
 
 io::ReportSection areas_section(const std::vector<AreaCoverage>& areas) {
-  const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
   io::Table table{{"area (its sensors)", "squares", "not seen by any sensor", "not seen by its own"}, {}};
   for (const AreaCoverage& area : areas) {
-    table.rows.push_back({area.area, std::to_string(area.squares), percent(area.blind_fraction),
-                          area.blind_to_its_own ? percent(*area.blind_to_its_own) : "no sensor"});
+    table.rows.push_back({area.area, std::to_string(area.squares), percent(area.blind_fraction, 1),
+                          area.blind_to_its_own ? percent(*area.blind_to_its_own, 1) : "no sensor"});
   }
   return {"By area", {}, {std::move(table)}, {}};
 }
@@ -145,12 +144,12 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
   if (map.sensors.size() > 1) {
     io::MapChart chart = map_of_all(study, map);
     chart.note = "in each square the sensor that reported motion most often there; " +
-                 fixed(100.0 * figures.all.blind_fraction, 0) + " % of the squares are seen by none";
+                 percent(figures.all.blind_fraction) + " of the squares are seen by none";
     maps.charts.emplace_back(std::move(chart));
   }
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
     io::MapChart chart = map_chart(study, map, i);
-    chart.note = "not seen: " + fixed(100.0 * figures.sensors[i].blind_fraction, 0) + " % of the squares";
+    chart.note = "not seen: " + percent(figures.sensors[i].blind_fraction) + " of the squares";
     maps.charts.emplace_back(std::move(chart));
   }
   report.sections.push_back(std::move(maps));

@@ -66,7 +66,7 @@ void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestRe
   io::MapChart pass = map_of(test, WalkWords(test).pass_title(), "verdict");
   pass.colours = io::MapChart::Colours::pass_or_fail;
   probability.note = time + "; no colour: nothing could be tried there";
-  pass.note = "required: " + fixed(100.0 * requirement.probability, 0) + " %";
+  pass.note = "required: " + percent(requirement.probability);
   probability.unit = "of the tries noticed";
   for (const PointResult& point : result.points) {
     const Tries& tries = point.*motion;

@@ -11,8 +11,6 @@
 namespace pirsim::studies {
 namespace {
 
-std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
-
 std::string plain(double value) {
   std::ostringstream out;
   out << value;

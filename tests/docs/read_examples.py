@@ -87,8 +87,11 @@ class Reader:
         self.run("dataset", "-q", self.write("recipe.yaml", text), "-o", f"dataset_{len(text)}", "--shard", "1/45")
 
     def nuisance(self, text):
-        self.run("reconcile", "seal", "-q", "--scene", self.room, "--script", self.write("study.yaml", SCRIPT), "--nuisance",
-                 self.write("nuisance.yaml", text), "--answer", "answer.json", "-o", "challenge")
+        (self.folder / "plan/report.json").mkdir(parents=True, exist_ok=True)  # after the nuisance, what ends the command
+        done = subprocess.run([self.pirsim, "reconcile", "plan", "--scene", self.room, "--script",
+                               self.write("study.yaml", SCRIPT), "--nuisance", self.write("nuisance.yaml", text), "-o", "plan"],
+                              cwd=self.folder, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 4 and done.stderr == "plan/report.json: error: can't write: Is a directory\n", done.stderr
 
     def marks(self, text):
         names = ("front_glass", "Lamp_1", "Radiator.001")

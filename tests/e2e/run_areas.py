@@ -129,7 +129,7 @@ class Areas(unittest.TestCase):
                 writer = csv.DictWriter(file, table[0])
                 writer.writeheader()
                 writer.writerows(table)
-            told = pirsim("log", self.folder / name, "--window", 1, "-o", self.folder / "read.csv")
+            told = pirsim("log", self.folder / name, "--step", 1, "-o", self.folder / "read.csv")
             header = (self.folder / "read.csv").read_text().splitlines()[0]
             self.assertEqual(header, "time_s,time,people,PIR1,PIR2", told.stderr)
 

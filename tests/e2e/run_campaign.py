@@ -124,13 +124,13 @@ class Shards(unittest.TestCase):
 
     def test_status_prints_what_to_submit_again(self):
         with self.copy() as folder:
-            self.assertEqual(call([PIRSIM, "status", folder]).stdout, "")
+            self.assertEqual(call([PIRSIM, "merge", "--status", folder]).stdout, "")
             (folder / "shard-0002-of-0005.csv.json").unlink()
             with open(folder / "shard-0003-of-0005.csv", "ab") as file:
                 file.write(b"x")
             for file in folder.glob("shard-0005*"):
                 file.unlink()
-            result = call([PIRSIM, "status", folder])
+            result = call([PIRSIM, "merge", "--status", folder])
             self.assertEqual(result.stdout, "2-3,5\n")
             for line in ("shard-0002-of-0005: unfinished", "shard-0003-of-0005: broken: longer than",
                          "shard-0005-of-0005: missing", "2 of 5 shards are done; run the others by their command with --shard N/5 --resume"):
@@ -230,7 +230,7 @@ class Occupants(unittest.TestCase):
             for i in (2, 3, 1):
                 study("--shard", f"{i}/3", "-o", folder / "out", "--occupants", folder / "who", "--threads", i)
             for name, expected in (("out", self.rows), ("who", self.bytes)):
-                self.assertEqual(call([PIRSIM, "status", folder / name]).stdout, "")
+                self.assertEqual(call([PIRSIM, "merge", "--status", folder / name]).stdout, "")
                 call([PIRSIM, "merge", folder / name, "-o", folder / f"{name}.csv"])
                 self.assertEqual((folder / f"{name}.csv").read_bytes(), expected)
             self.assertEqual(json.loads((folder / "who.csv.json").read_text()), self.manifest)

@@ -58,27 +58,33 @@ class Home(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             keys = "--rooms", 2, "--residents", 2, "--sensors-at", "doorway", "--number", 4
-            told = pirsim("home", *keys, "-o", folder / "a.gltf").stderr
+            told = pirsim("room", "--home", *keys, "-o", folder / "a.gltf").stderr
             self.assertIn("for 2 residents, rooms living_room", told)
             self.assertIn("PIR_bath_door (AMN33111)", told)
-            pirsim("home", *keys, "-o", folder / "b.gltf", "-q")
+            pirsim("room", "--home", *keys, "-o", folder / "b.gltf", "-q")
             self.assertEqual((folder / "a.gltf").read_bytes(), (folder / "b.gltf").read_bytes())
-            home = "day", "--scene", folder / "a.gltf", "--home", 2, "--days", 1, "--sensors", DATA / "sensors"
+            home = "run", "--scene", folder / "a.gltf", "--home", 2, "--days", 1, "--sensors", DATA / "sensors"
             script = folder / "day.yaml"
-            script.write_text(pirsim(*home, "--print-script").stdout)
+            script.write_text(pirsim(*home, "--print-config").stdout)
             checked = pirsim("check", "--scene", folder / "a.gltf", "--script", script, "--sensors", DATA / "sensors")
             self.assertNotIn("warning", checked.stderr)
             self.assertIn("doors: front", checked.stdout)
 
     def test_faults_name_the_nearest(self):
-        self.assertIn("did you mean 'corridor'", pirsim("home", "--layout", "coridor", "-o", "x.gltf", code=2).stderr)
-        self.assertIn("did you mean 'residents'", pirsim("home", "--set", "resident=3", "-o", "x.gltf", code=2).stderr)
-        self.assertIn("--rooms 5", pirsim("home", "--rooms", 5, "-o", "x.gltf", code=2).stderr)
-        self.assertIn("none of 300 flats", pirsim("home", "--rooms", 1, "--size", 20, "--residents", 5, "-o", "x.gltf",
+        self.assertIn("did you mean 'corridor'", pirsim("room", "--home", "--layout", "coridor", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("did you mean 'residents'", pirsim("room", "--home", "--set", "resident=3", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("--rooms 5", pirsim("room", "--home", "--rooms", 5, "-o", "x.gltf", code=2).stderr)
+        self.assertIn("none of 300 flats", pirsim("room", "--home", "--rooms", 1, "--size", 20, "--residents", 5, "-o", "x.gltf",
                                                   code=5).stderr)
         recipe = DATA / "recipes" / "homes.yaml"
-        self.assertIn("pirsim home draws it", pirsim("room", recipe, "-o", "x.gltf", code=2).stderr)
-        self.assertIn("pirsim room draws it", pirsim("home", DATA / "recipes" / "tiny.yaml", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("isn't a home", pirsim("room", "--home", DATA / "recipes" / "tiny.yaml", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("--rooms requires --home", pirsim("room", "--rooms", 2, "-o", "x.gltf", code=2).stderr)
+        self.assertIn("--home excludes --kind", pirsim("room", "--home", "--kind", "office", "-o", "x.gltf", code=2).stderr)
+        with tempfile.TemporaryDirectory() as folder:  # a recipe says itself what its rooms are
+            files = [pathlib.Path(folder) / name for name in ("a.gltf", "b.gltf")]
+            pirsim("room", "--home", recipe, "-o", files[0], "-q")
+            pirsim("room", recipe, "-o", files[1], "-q")
+            self.assertEqual(files[0].read_bytes(), files[1].read_bytes())
 
 
 class Dataset(unittest.TestCase):

@@ -25,7 +25,7 @@ def chapter(source):
 
 
 def reconcile(pirsim, folder, *args, code, out="refused"):
-    result = subprocess.run([pirsim, "reconcile", *map(str, args), "--out", out], cwd=folder, capture_output=True,
+    result = subprocess.run([pirsim, "reconcile", *map(str, args), "-o", out], cwd=folder, capture_output=True,
                             text=True, timeout=600)
     assert result.returncode == code, f"{args}: {result.returncode}, expected {code}\n{result.stderr}"
     return result.stderr

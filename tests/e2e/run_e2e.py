@@ -47,24 +47,24 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
             ("view",): ("studyA.yaml",),
             ("coverage",): ("studyB.yaml",), ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
             ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
-            ("reconcile", "selftest"): ("studyA.yaml",),
-            ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
-OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
-          ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",), ("data",): (),
+            ("reconcile", "selftest"): ("studyA.yaml",)}
+OTHERS = {("data",): (),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
           ("count",): ("counter.json", "--log", "nowhere.csv"), ("control",): ("--log", "nowhere.csv"),
-          ("room",): ("-o", "room.gltf"), ("home",): ("-o", "flat.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
+          ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
+# Of runs without a script.
+DAYS = "--staff", "--meetings", "--home", "--days", "--first-day", "--from", "--to", "--cleaning"
+FLAT_VALUES = {"--rooms": "2", "--residents": "1", "--size": "60", "--layout": "hall", "--sensors-at": "doorway",
+               "--mount": "ceiling", "--model": "EKMC1601111"}
 ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
-               "--depth": "5"}
-HOME_VALUES = {"--set": "own_kitchen=0", "--rooms": "2", "--size": "60", "--height": "2.5", "--layout": "hall",
-               "--sensors-at": "doorway", "--mount": "ceiling", "--model": "EKMC1601111"}
+               "--depth": "5", **FLAT_VALUES}
 VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--maps": "maps", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
-          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
+          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
           "--cleaning": "none", "--time-zone": "Europe/Berlin", "--standard": "nema-wd7", "--light": "lit.csv", "--schedule": "light.csv"}
 OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
@@ -89,15 +89,13 @@ WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--repo
            ("placements",): ((*ROOM, "--script", "placements.yaml", *COARSE, "--set", "search.evaluations=2",
                               "-o", "best.gltf", "--report", "sets.html", "--maps", "plans"),
                              "best.gltf sets.html plans/before.png"),
-           ("room",): (("-o", "room.gltf"), "room.gltf"), ("home",): (("-o", "flat.gltf"), "flat.gltf"),
+           ("room",): (("-o", "room.gltf"), "room.gltf"),
            ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--schedule", "day.csv", "--report",
                            "light.html"), "costs.csv lit.csv day.csv light.html"),
            ("log",): (("log.csv", "-o", "log_rows.csv", "--report", "log.html"), "log_rows.csv log.html"),
-           ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md"),
-           ("reconcile", "seal"): ((*STUDY, "--answer", "answer.json", "--out", "sealed"),
-                                   "answer.json sealed/measured.csv sealed/commitment.sha256")}
-# Take minutes; day is a run.
-SLOW = {("day",), ("reconcile",), ("reconcile", "plan"), ("reconcile", "selftest"), ("dataset",), ("calibrate",),
+           ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md")}
+# Take minutes.
+SLOW = {("reconcile",), ("reconcile", "plan"), ("reconcile", "selftest"), ("dataset",), ("calibrate",),
         ("count",), ()}
 
 
@@ -115,9 +113,7 @@ def value_of(command, option):
         return "csv"
     if command == ("room",) and option in ROOM_VALUES:
         return ROOM_VALUES[option]
-    if command == ("home",) and option in HOME_VALUES:
-        return HOME_VALUES[option]
-    return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
+    return VALUES.get(option, "1")
 
 
 def with_folder(option, words):
@@ -137,7 +133,7 @@ class Options(unittest.TestCase):
 
     def test_every_command_says_what_it_wrote_unless_it_is_to_be_quiet(self):
         makers = {command for command in {*COMMANDS, *OTHERS}
-                  if {"--output", "--out"} & options_of(command).keys()}
+                  if "--output" in options_of(command)}
         self.assertEqual(makers, {*WRITTEN, *SLOW})
         with tempfile.TemporaryDirectory() as folder:
             write(folder, "log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
@@ -149,8 +145,7 @@ class Options(unittest.TestCase):
                 for file in files.split():
                     self.assertRegex(line[0], rf"(wrote |, ){re.escape(file)}(?=[:,]|$)", command)
                     self.assertTrue((pathlib.Path(folder) / file).exists(), file)
-                for file in ("answer.json", "sealed/measured.csv", "sealed/commitment.sha256", "marks.yaml"):
-                    (pathlib.Path(folder) / file).unlink(missing_ok=True)  # these are never overwritten
+                (pathlib.Path(folder) / "marks.yaml").unlink(missing_ok=True)  # is never overwritten
                 self.assertNotIn("wrote", pirsim(*command, *args, "-q", cwd=folder).stderr, command)
 
     def test_no_command_offers_an_option_that_it_refuses(self):
@@ -170,8 +165,11 @@ class Options(unittest.TestCase):
                     if command == ("check",) and option in ("--floor", "--ignore", "--output"):
                         value += "--suggest",
                     needed = with_folder(option, rest)
-                    # A standard takes the place of a script.
-                    study_of = () if option == "--standard" else ("--script", DATA / "studies" / script)
+                    study_of = "--script", DATA / "studies" / script
+                    if option == "--standard":  # takes the place of a script
+                        study_of = ()
+                    elif option in DAYS and command in ((), ("run",)):
+                        study_of = () if option in ("--staff", "--home") else ("--staff", 2)
                     result = pirsim(*command, "--scene", "nowhere.gltf", *study_of, *needed, option, *value, code=4,
                                     cwd=folder)
                     self.assertIn("nowhere.gltf", result.stderr, (command, option))
@@ -180,13 +178,9 @@ class Options(unittest.TestCase):
                     if option == "--help" or option in rest or option == "--output":
                         continue
                     value = () if takes is None else (value_of(command, option),)
-                    if command == ("day",) and option == "--format":
-                        value += "--shard", "1/2"
-                    needed = rest
-                    if option == "--home":  # its people take the place of the staff
-                        needed = [word for word in rest if word not in ("--staff", "2")]
-                    result = subprocess.run([PIRSIM, *command, *with_folder(option, needed), option, *value],
-                                            capture_output=True, text=True, cwd=folder)
+                    needed = (*rest, "--home") if option in FLAT_VALUES else rest[:1] if option == "--status" else rest
+                    result = subprocess.run([PIRSIM, *command, *needed, option, *value], capture_output=True, text=True,
+                                            cwd=folder)
                     self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
 
     def test_no_command_offers_an_option_that_would_do_nothing(self):
@@ -212,13 +206,11 @@ class Options(unittest.TestCase):
             self.assertNotEqual(map_of("--seed", 5), map_of("--seed", 6))
 
     def test_the_response_is_a_setting_like_others(self):
-        for given in (("run",), ("day", "--scene", "room.gltf", "--staff", 1)):
-            *command, asked = (*given, "--print-config" if given == ("run",) else "--print-script")
-            files = study_files() if given == ("run",) else ()
+        for given in (study_files(), ("--scene", "room.gltf", "--staff", 1)):
             for word in ("zones", "analog"):
-                config = pirsim(*command, *files, asked, "--response", word).stdout
+                config = pirsim("run", *given, "--print-config", "--response", word).stdout
                 self.assertIn(f"response: {word}\n", config)
-                self.assertEqual(config, pirsim(*command, *files, asked, "--set", f"sensing.response={word}").stdout)
+                self.assertEqual(config, pirsim("run", *given, "--print-config", "--set", f"sensing.response={word}").stdout)
         self.assertIn("error: --response: 'zone' isn't a response (did you mean 'zones'?)",
                       pirsim("check", *study_files(), "--response", "zone", code=2).stderr)
 
@@ -230,6 +222,28 @@ class Options(unittest.TestCase):
         self.assertIn("--measured", pirsim(*scene, "reconcile", *script, "--measured", "x", "plan", code=2).stderr)
         refused = pirsim("-o", "room.png", "preview", *study_files(), code=2).stderr
         self.assertIn("--output must stand after 'preview'", refused)
+
+    def test_words_of_an_earlier_version_do_the_same_and_are_not_in_the_help(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write(folder, "log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
+            pirsim(*SHORT, "--shard", "1/2", "-o", "shards", "-q", cwd=folder)
+            day = *ROOM, "--staff", 1, "--days", 1, "--from", "08:00", "--to", "08:10"
+            for old, now in ((("day", *day), ("run", *day)),
+                             (("day", *day, "--print-script"), ("run", *day, "--print-config")),
+                             (("status", "shards"), ("merge", "shards", "--status")),
+                             (("home", "-o", "a.gltf"), ("room", "--home", "-o", "a.gltf")),
+                             (("log", "log.csv", "--window", 5, "-o", "b.csv"), ("log", "log.csv", "--step", 5, "-o", "b.csv")),
+                             (("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "--out", "log.csv"),
+                              ("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "-o", "log.csv"))):
+                code = 4 if old[0] == "reconcile" else 0
+                with self.subTest(old=old):
+                    one, other = (pirsim(*words, cwd=folder, code=code) for words in (old, now))
+                    self.assertEqual((one.stdout, one.stderr), (other.stdout, other.stderr))
+                    text = pirsim(*now[:1], "--help").stdout + pirsim("--help").stdout
+                    for word in {*map(str, old)} - {*map(str, now)}:
+                        self.assertNotRegex(text, rf"(\n  |,){word}[ ,]", word)
+        self.assertNotIn("--tracer", pirsim("--help").stdout)
+        self.assertEqual(pirsim("help", "home").stdout.splitlines()[2:], pirsim("help", "room").stdout.splitlines()[2:])
 
     def test_an_option_given_twice_is_said_to_be(self):
         for args in (("--seed", 1, "--seed", 2), ("--seed", 1, "run", "--seed", 2), ("run", "--seed", 1, "--seed", 2)):
@@ -272,12 +286,12 @@ class Days(unittest.TestCase):
 
     def day(self, *args, **kwargs):
         scene = DATA / "rooms" / "open_office.gltf"
-        return pirsim("day", *(scene if arg is None else arg for arg in self.OFFICE), *args, **kwargs)
+        return pirsim("run", *(scene if arg is None else arg for arg in self.OFFICE), *args, **kwargs)
 
     def test_a_week_of_an_office_and_the_script_that_it_makes(self):
         with tempfile.TemporaryDirectory() as folder:
             week = self.day("--occupants", f"{folder}/who.csv", "--report", f"{folder}/week.html").stdout
-            script = write(folder, "week.yaml", self.day("--print-script").stdout)
+            script = write(folder, "week.yaml", self.day("--print-config").stdout)
             self.assertEqual(study("-q", scene="open_office.gltf", script=script).stdout, week)
             table = rows(week)
             self.assertEqual(len(table), 5 * 300)
@@ -299,7 +313,7 @@ class Days(unittest.TestCase):
                 self.day("--shard", f"{i}/2", "-o", f"{folder}/shards", "--threads", 2)
             pirsim("merge", f"{folder}/shards", "-o", f"{folder}/merged.csv", "-q")
             self.assertEqual((pathlib.Path(folder) / "merged.csv").read_text(), whole)
-            script = write(folder, "week.yaml", self.day("--print-script").stdout)
+            script = write(folder, "week.yaml", self.day("--print-config").stdout)
             for args in (("merge", f"{folder}/shards", "--script", script, "--summary", f"{folder}/merged.md"),
                          ("--scene", DATA / "rooms/open_office.gltf", "--script", script, "--summary",
                           f"{folder}/whole.md")):
@@ -317,7 +331,7 @@ class Days(unittest.TestCase):
 
     def test_a_day_of_meetings(self):
         held = "schedule.meetings.held=[{at: '10:00', duration_min: 5, people: 4}]"
-        table = rows(pirsim("day", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--days", 1, "--from",
+        table = rows(pirsim("run", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--days", 1, "--from",
                             "09:55", "--to", "10:12", "--set", held, "-q").stdout)
         self.assertEqual(max(int(row["people"]) for row in table), 4)
         self.assertEqual({row["phase"] for row in table}, {"empty", "occupied", "meeting"})
@@ -345,13 +359,15 @@ class Days(unittest.TestCase):
 
     def test_what_a_room_can_not_hold_is_refused(self):
         room = "--scene", DATA / "rooms" / "open_office.gltf"
-        self.assertIn("say who comes", pirsim("day", *room, code=2).stderr)
-        self.assertIn("more staff than the 9 seats", pirsim("day", *room, "--staff", 10, code=3).stderr)
+        self.assertIn("say who comes", pirsim("run", *room, "--days", 2, code=2).stderr)
+        self.assertIn("--replicates excludes --days", pirsim(*room, "--staff", 1, "--days", 2, "--replicates", 2, code=2).stderr)
+        self.assertIn("--script excludes --staff", pirsim(*room, "--staff", 1, "--script", "office_week.yaml", code=2).stderr)
+        self.assertIn("more staff than the 9 seats", pirsim("run", *room, "--staff", 10, code=3).stderr)
         for option, value, told in (("--to", "25:00", "error: --to: expected a time of day"),
                                     ("--from", "09:00 #", "error: --from: '09:00 #' is not made of digits"),
                                     ("--cleaning", "nne", "error: --cleaning: 'nne' is not made of digits"),
                                     ("--first-day", "2026-13-01", "error: --first-day: '2026-13-01' is no date")):
-            self.assertIn(told, pirsim("day", *room, "--staff", 2, option, value, code=2).stderr)
+            self.assertIn(told, pirsim("run", *room, "--staff", 2, option, value, code=2).stderr)
 
 
 class Light(unittest.TestCase):
@@ -484,7 +500,7 @@ class Light(unittest.TestCase):
 class Homes(unittest.TestCase):
     def day_of_two(self, folder):
         flat = DATA / "rooms" / "flat.gltf"
-        text = pirsim("day", "--scene", flat, "--home", 2, "--days", 2, "--print-script").stdout
+        text = pirsim("run", "--scene", flat, "--home", 2, "--days", 2, "--print-config").stdout
         return flat, write(folder, "home.yaml", text + "sensing: {response: zones, tick_rate_hz: 5}\n")
 
     def test_check_tells_who_is_expected_and_what_has_no_place(self):
@@ -693,9 +709,7 @@ class Help(unittest.TestCase):
                            (("--threads", "-1"), "--threads: '-1' is not a whole number from 0"),
                            (("--seed", "abc"), "--seed: 'abc' is not a whole number"),
                            (("room", "--seed", "-1"), "--seed: '-1' is not a whole number from 0 to 2^64 - 1"),
-                           (("room", "--seed", 2 ** 64), f"--seed: '{2 ** 64}' is not a whole number from 0 to 2^64 - 1"),
-                           (("reconcile", "seal", "--secret-seed", "-1"),
-                            "--secret-seed: '-1' is not a whole number from 0 to 2^64 - 1")):
+                           (("room", "--seed", 2 ** 64), f"--seed: '{2 ** 64}' is not a whole number from 0 to 2^64 - 1")):
             self.assertEqual(pirsim(*args, code=2).stderr.splitlines()[0], f"error: {told}")
 
     def test_version_has_a_short_name(self):
@@ -713,13 +727,13 @@ class CommandLine(unittest.TestCase):
         self.assertIn("did you mean", study("--tracer", "embre", code=2).stderr)
 
     def test_what_only_an_analysis_of_data_takes_is_refused_by_its_subcommands(self):
-        for command in ("plan", "selftest", "seal"):
+        for command in ("plan", "selftest"):
             text = pirsim("reconcile", command, "--help").stdout
             for option in ("--measured", "--holdout", "--max-effects"):
                 self.assertNotIn(option, text)
                 self.assertIn(option, pirsim("reconcile", command, option, "1", code=2).stderr)
                 self.assertIn(option, pirsim("reconcile", option, "1", command, code=2).stderr)
-            self.assertIn("--out", pirsim("reconcile", "--out", "folder", command, code=2).stderr)
+            self.assertIn("--output", pirsim("reconcile", "-o", "folder", command, code=2).stderr)
 
     def test_no_output_replaces_an_input(self):
         with tempfile.TemporaryDirectory() as name:

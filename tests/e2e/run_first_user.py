@@ -81,7 +81,7 @@ class Doubts(unittest.TestCase):
         for seed in range(1, 6):
             file = f"{self.folder.name}/made.gltf"
             pirsim("room", "-o", file, "--seed", seed)
-            told = pirsim("day", "--scene", file, "--staff", 1, "--from", "09:00", "--to", "09:01", "--days", 1).stderr
+            told = pirsim("run", "--scene", file, "--staff", 1, "--from", "09:00", "--to", "09:01", "--days", 1).stderr
             self.assertNotIn("warning: node", told, seed)
 
     def test_an_entrance_turned_round(self):
@@ -758,7 +758,7 @@ class Words(unittest.TestCase):
             self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
 
     def test_days_off_alone_are_told(self):
-        day = "day", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--from", "09:00", "--to", "09:01"
+        day = "run", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--from", "09:00", "--to", "09:01"
         for first, days, told in (("2026-03-07", 1, True), ("2026-03-07", 2, True), ("2026-03-07", 3, False),
                                   ("2026-03-06", 1, False)):
             said = pirsim(*day, "--first-day", first, "--days", days).stderr
@@ -926,10 +926,10 @@ class Streams(unittest.TestCase):
             room = pathlib.Path(folder) / "room.glb"
             pirsim("room", "-o", room, "--seed", 2)
             day = "--staff", 1, "--days", 1, "--from", "09:00", "--to", "09:01", "-q"
-            piped = subprocess.run([PIRSIM, "day", "--scene", "-", *map(str, day)], input=room.read_bytes(),
+            piped = subprocess.run([PIRSIM, "run", "--scene", "-", *map(str, day)], input=room.read_bytes(),
                                    capture_output=True)
             self.assertEqual(piped.returncode, 0, piped.stderr)
-            self.assertEqual(piped.stdout.decode(), pirsim("day", "--scene", room, *day).stdout)
+            self.assertEqual(piped.stdout.decode(), pirsim("run", "--scene", room, *day).stdout)
 
     def test_measured_rows_from_standard_input(self):
         """A faulty line tells that they were read; an analysis would take minutes."""

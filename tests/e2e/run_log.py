@@ -58,16 +58,16 @@ class Inputs(Case):
         for encoded in (WIDE.encode(), b"\xef\xbb\xbf" + WIDE.encode(), WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
                         WIDE.encode("utf-16-be"), "\ufeff".encode("utf-16-be") + WIDE.encode("utf-16-be"),
                         WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE.encode())):
-            self.assertEqual(self.rows(self.write("log", encoded), "--window", 1), ROWS)
+            self.assertEqual(self.rows(self.write("log", encoded), "--step", 1), ROWS)
 
     def test_standard_input_and_pipes(self):
-        self.assertEqual(self.rows("-", "--window", 1, input=WIDE.encode()), ROWS)
+        self.assertEqual(self.rows("-", "--step", 1, input=WIDE.encode()), ROWS)
         pipe = self.folder / "pipe"
         os.mkfifo(pipe)
         with subprocess.Popen(["sh", "-c", f"cat '{self.write('log', WIDE)}' > '{pipe}'"]):
-            self.assertEqual(self.rows(pipe, "--window", 1), ROWS)
+            self.assertEqual(self.rows(pipe, "--step", 1), ROWS)
         with open(self.write("log", WIDE), "rb") as redirected:  # where it stands, and not from its begin
-            self.assertEqual(self.rows("-", "--window", 1, stdin=redirected), ROWS)
+            self.assertEqual(self.rows("-", "--step", 1, stdin=redirected), ROWS)
         costs = self.folder / "costs.csv"
         run("control", "--log", "-", "--delay", 1, "-q", "-o", costs, input=WIDE.encode())
         through = costs.read_text()
@@ -88,7 +88,7 @@ class Inputs(Case):
     def test_names_of_the_scene_and_a_count_by_a_map(self):
         log = self.write("log.csv", "t;left;right;n\n10;0;1;0\n20;1;1;2\n30;0;0;3\n")
         chosen = self.write("map.yaml", "pirsim_log: 1\nsensors: {PIR2: right, PIR1: left}\npeople: n\n")
-        self.assertEqual(self.rows(log, "--map", chosen, "--window", 10),
+        self.assertEqual(self.rows(log, "--map", chosen, "--step", 10),
                          "time_s,people,PIR2,PIR1\n10,0,1,0\n20,2,1,1\n30,3,0,0\n")
         for text, told in (("sensors: {P: lefd}", "there is no column 'lefd' (did you mean 'left'?)"),
                            ("people: m", "there is no column 'm'"), ("time: [t, n, left, right]", "map.yaml:2:7: error: time: expected a column"),
@@ -105,7 +105,7 @@ class Inputs(Case):
         lines = rows.read_text().splitlines()
         first = [line for line in lines[1:] if line.split(",")[1] == lines[1].split(",")[1]]
         log = self.write("one.csv", "\n".join([lines[0], *first]) + "\n")
-        got = list(csv.reader(io.StringIO(self.rows(log, "--window", 1))))
+        got = list(csv.reader(io.StringIO(self.rows(log, "--step", 1))))
         self.assertEqual(got[0], ["time_s", "people", *lines[0].split(",")[5:]])
         self.assertEqual([row[1:] for row in got[1:]], [line.split(",")[4:] for line in first])
         self.assertIn("another run begins here", run("log", rows, code=3)[1])
@@ -124,7 +124,7 @@ class Time(Case):
                 text = "entity_id,state,last_changed\n" + "".join(
                     f"binary_sensor.a,{'on' if i % 2 else 'off'},{moment:%Y-%m-%dT%H:%M:%S}.000Z\n" for i, moment in enumerate(moments))
                 chosen = self.write("map.yaml", f"pirsim_log: 1\ntime_zone: {name}\n")
-                rows = list(csv.DictReader(io.StringIO(self.rows(self.write("log.csv", text), "--map", chosen, "--window", 300))))
+                rows = list(csv.DictReader(io.StringIO(self.rows(self.write("log.csv", text), "--map", chosen, "--step", 300))))
                 for i, row in enumerate(rows):
                     end = begin + datetime.timedelta(seconds=300 * (i + 1))
                     self.assertEqual(row["time"], end.astimezone(zone).strftime("%Y-%m-%dT%H:%M:%S"))
@@ -140,7 +140,7 @@ class Time(Case):
         text = "time,A\n" + "".join(f"{moment.astimezone(zone):%Y-%m-%d %H:%M},{int(i % 7 == 0)}\n" for i, moment in enumerate(readings))
         chosen = self.write("map.yaml", "pirsim_log: 1\ntime_zone: Europe/Berlin\n")
         log = self.write("log.csv", text)
-        rows = list(csv.DictReader(io.StringIO(self.rows(log, "--map", chosen, "--window", 600))))
+        rows = list(csv.DictReader(io.StringIO(self.rows(log, "--map", chosen, "--step", 600))))
         self.assertEqual([row["A"] for row in rows], [str(int(i % 7 == 0)) for i in range(150)])
         self.assertEqual([row["time"] for row in rows], [f"{moment.astimezone(zone):%Y-%m-%dT%H:%M:%S}" for moment in readings])
         told = run("log", log, "--map", chosen)[1]
@@ -253,7 +253,7 @@ class Database(Case):
         return path, base
 
     def motion(self, *args, **kwargs):
-        rows = list(csv.DictReader(io.StringIO(self.rows(*args, "--window", 1, **kwargs))))
+        rows = list(csv.DictReader(io.StringIO(self.rows(*args, "--step", 1, **kwargs))))
         return {name: "".join(row[f"binary_sensor.{name}_motion"] or "." for row in rows) for name in HOME_ROWS}, rows[0]["time"]
 
     def test_every_schema_and_half_of_one(self):
@@ -334,19 +334,19 @@ class Odd(Case):
                 self.assertEqual(told.count("warning"), len(remarks), told)
                 for remark in remarks:
                     self.assertIn(remark, told)
-                got = list(csv.reader(io.StringIO(self.rows(log, "--window", 1))))
+                got = list(csv.reader(io.StringIO(self.rows(log, "--step", 1))))
                 first = got[0].index("A") if "A" in got[0] else 1
                 self.assertEqual(",".join(row[first] for row in got[1:]), rows)
 
     def test_options_that_don_t_fit(self):
         log = self.write("log.csv", WIDE)
-        for args, told in ((("--window", 0), "a window lasts"), (("--window", 1e9), "a window lasts"), (("--from", "noon"), "from: 'noon' is no time"),
+        for args, told in ((("--step", 0), "a window lasts"), (("--step", 1e9), "a window lasts"), (("--from", "noon"), "from: 'noon' is no time"),
                            (("--from", "2025-04-06T19:00"), "nothing of the log is between"), (("--from", "30"), "from: '30' is no time"),
                            (("--from", "2025-04-06T18:00:03", "--to", "2025-04-06T18:00:02"), "expected a time after from"),
                            (("-o", log), "it would be overwritten"), (("--report", "page.txt"), ".html")):
             output = () if args[0] in ("-o", "--report") else ("-o", self.folder / "rows.csv")
             self.assertIn(told, run("log", log, *args, *output, code=2)[1])
-        self.assertEqual(self.rows(log, "--window", 1, "--from", "2025-04-06T18:00:01", "--to", "2025-04-06T18:00:03"),
+        self.assertEqual(self.rows(log, "--step", 1, "--from", "2025-04-06T18:00:01", "--to", "2025-04-06T18:00:03"),
                          ROWS.splitlines()[0] + "\n1,2025-04-06T18:00:02,1,\n2,2025-04-06T18:00:03,1,1\n")
 
 

@@ -85,7 +85,7 @@ def check_clocks(pirsim, source, folder):
         measured, out = folder / f"clock_{by_s}.csv", folder / f"clock_{by_s}"
         measured.write_text(stamped(rows, by_s))
         subprocess.run([pirsim, "reconcile", *study, "--measured", measured, "--effects", "clock_lag,trunk_tilt",
-                        "--budget", "1", "--out", out], capture_output=True, text=True, check=True)
+                        "--budget", "1", "-o", out], capture_output=True, text=True, check=True)
         report = json.loads((out / "report.json").read_text())
         assert report["verdict"] == "named" and report["effects"] == ["clock_lag"], report["sentence"]
         lag_s = float(re.search(r"lag_s: (\S+)", (out / "script_patched.yaml").read_text()).group(1))
@@ -107,7 +107,7 @@ def check_faulty_file(pirsim, study, rows, folder):
     measured, out = folder / "twins.csv", folder / "twins"
     measured.write_text("\n".join([header, *(",".join(row) for row in table)]) + "\n")
     result = subprocess.run([pirsim, "reconcile", *study, "--measured", measured, "--effects", "clock_lag,trunk_tilt",
-                             "--budget", "1", "--table", folder / "clock_-3/table", "--max-effects", "1", "--out", out],
+                             "--budget", "1", "--table", folder / "clock_-3/table", "--max-effects", "1", "-o", out],
                             capture_output=True, text=True, check=True)
     report = json.loads((out / "report.json").read_text())
     assert result.stdout.startswith("Look at the file first: PIR1 and PIR2 are equal in all"), result.stdout
@@ -132,7 +132,7 @@ def check_analog(pirsim, source, folder):
     subprocess.run([pirsim, *study, "--seed", "99", "--set", "effects=[{missed_triggers: {probability: 0.5}}]", "-o",
                     measured], check=True)
     subprocess.run([pirsim, "reconcile", *study, "--measured", measured, "--effects", "missed_triggers,range_scale",
-                    "--budget", "0.2", "--max-effects", "1", "--out", out], capture_output=True, text=True, check=True)
+                    "--budget", "0.2", "--max-effects", "1", "-o", out], capture_output=True, text=True, check=True)
     report = json.loads((out / "report.json").read_text())
     assert report["verdict"] == "named" and report["effects"] == ["missed_triggers"], report["sentence"]
     assert any("dual_polarity" in note for note in report["measured"]["notes"]), report["measured"]["notes"]
@@ -175,7 +175,7 @@ def main():
 
         reconcile("selftest", "--nulls", "5", "--injected", "1", "--table", folder / "found/table")
         self_test = folder / "reconcile_selftest"
-        assert "| a name although nothing is hidden | at most 0.01 |" in (self_test / "targets.md").read_text()
+        assert "| a name although nothing is hidden | " in (self_test / "selftest.md").read_text()
         assert not (folder / "reconcile").exists()
         assert (self_test / "selftest.html").stat().st_size > 400_000
 

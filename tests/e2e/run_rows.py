@@ -156,7 +156,7 @@ class Runs(Case):
         log = self.write("log.csv", "time,PIR1,people",
                          [f"{time},{'' if i == 3 else int(i == 5)},{int(i > 2)}" for i, time in enumerate(times)])
         out = self.folder / "rows.csv"
-        self.assertEqual(run("log", log, "--window", 60, "-o", out, "-q").returncode, 0)
+        self.assertEqual(run("log", log, "--step", 60, "-o", out, "-q").returncode, 0)
         of_rows = self.costs(out, delay=2)[0]
         of_log = self.costs("--log", log, "--step", 60, delay=2)[0]
         self.assertEqual(of_rows, of_log)

@@ -15,8 +15,7 @@ import tomllib
 import unittest
 
 SOURCE = None
-RECIPE = "tools/packaging/spack_repo/pirsim/packages/pirsim/package.py"
-TELLERS = "CMakeLists.txt", "CITATION.cff", "CHANGELOG.md", RECIPE
+TELLERS = "CMakeLists.txt", "CITATION.cff", "CHANGELOG.md"
 
 
 class Versions(unittest.TestCase):
@@ -34,7 +33,7 @@ class Versions(unittest.TestCase):
 
     def test_the_files_agree(self):
         self.assertEqual(self.check(self.version).returncode, 0, self.check(self.version).stderr)
-        self.assertEqual(self.check("99.9.9").stderr.count("tells version"), 5)
+        self.assertEqual(self.check("99.9.9").stderr.count("tells version"), 3)
 
     def test_each_file_is_asked(self):
         for name in TELLERS:

@@ -44,7 +44,7 @@ def test_arrays_and_what_is_unknown(wide):
 
 
 def test_rows_are_those_of_the_command_line(wide, tmp_path, command):
-    command("log", wide, "-q", "--window", 60, "-o", tmp_path / "rows.csv")
+    command("log", wide, "-q", "--step", 60, "-o", tmp_path / "rows.csv")
     told = list(csv.DictReader(io.StringIO((tmp_path / "rows.csv").read_text())))
     log = pirsim.read_log(str(wide), window_s=60)
     assert [row["time"] for row in told] == [str(time)[:19] for time in log.time]

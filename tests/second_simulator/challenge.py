@@ -113,7 +113,7 @@ class Challenger:
             measurement.write(folder / "measured.csv", runs)
             subprocess.run(
                 [self.options.pirsim, "reconcile", "--scene", self.options.scene, "--script", self.options.script, "-q",
-                 "--measured", folder / "measured.csv", "--out", folder, *self.of_reconcile], check=True,
+                 "--measured", folder / "measured.csv", "-o", folder, *self.of_reconcile], check=True,
                 stdout=subprocess.DEVNULL)
         report = json.loads((folder / "report.json").read_text())
         verification = report["verification"] or {}

@@ -2,7 +2,7 @@
 """A campaign on a real Slurm, brought up on this machine from Debian's packages (slurm-wlm, munge).
 
 Usage: run_slurm.py PIRSIM SOURCE_DIR. Submits an array by tools/slurm/submit, kills one task and cancels another,
-submits what `pirsim status` prints, lets the dependent job merge, and compares bytes with a single process. Exit code
+submits what `pirsim merge --status` prints, lets the dependent job merge, and compares bytes with a single process. Exit code
 77, a skip for CTest, where the packages or the rights (root) are missing.
 """
 import os
@@ -177,7 +177,7 @@ def campaign(cluster, pirsim, source, folder, study):
     cluster.wait_until_over(merge)  # its dependency can't be fulfilled any more
     assert not (out / "all.csv").exists()
 
-    status = subprocess.run([pirsim, "status", out], capture_output=True, text=True, check=True)
+    status = subprocess.run([pirsim, "merge", out, "--status"], capture_output=True, text=True, check=True)
     print(status.stderr, end="", file=sys.stderr)
     assert status.stdout == "2-3\n", status
     assert "shard-0002-of-0006: unfinished" in status.stderr

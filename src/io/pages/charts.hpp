@@ -1,7 +1,12 @@
 // Charts as plain data. Report pages draw them with Vega.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -191,6 +196,26 @@ struct DaysChart {
     int level = 0;  ///< unknown, or 1 to 4: motion in up to 5, 20, 50, 100 % of the time; of people their number
   };
   static constexpr int unknown = -1;
+  /// Of a share of time. Most sensors move little: equal steps would show one level.
+  template <std::floating_point Share>
+  [[nodiscard]] static int level_of(Share share) {
+    constexpr std::array above{Share(0.0), Share(0.05), Share(0.2), Share(0.5)};
+    return static_cast<int>(std::ranges::count_if(above, [&](Share least) { return share > least; }));
+  }
+  /// From the levels of one day's bins.
+  [[nodiscard]] static std::vector<Run> runs_of(std::span<const std::int32_t> levels) {
+    std::vector<Run> runs;
+    for (int at = 0; at < static_cast<int>(levels.size()); ++at) {
+      const int level = levels[static_cast<std::size_t>(at)];
+      if (level == 0) continue;
+      if (!runs.empty() && runs.back().to == at && runs.back().level == level) {
+        ++runs.back().to;
+      } else {
+        runs.push_back({at, at + 1, level});
+      }
+    }
+    return runs;
+  }
   enum class Shows { motion, people };
   struct Line {
     std::string name;

@@ -65,27 +65,7 @@ void each_bin(const Log& log, const DayGrid& grid, const LogRun& run, Put put) {
   }
 }
 
-/// From levels of one day's bins.
-std::vector<DaysChart::Run> runs_of(const std::int32_t* levels, std::size_t n) {
-  std::vector<DaysChart::Run> runs;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (levels[i] == 0) continue;
-    const int at = static_cast<int>(i);
-    if (!runs.empty() && runs.back().to == at && runs.back().level == levels[i]) {
-      ++runs.back().to;
-    } else {
-      runs.push_back({at, at + 1, levels[i]});
-    }
-  }
-  return runs;
-}
-
 using Levels = std::vector<std::int32_t>;  ///< (n_days x n_bins)
-
-std::int32_t level_of(float share) {
-  constexpr std::array above{0.0F, 0.05F, 0.2F, 0.5F};  // most sensors move little: equal steps would show one level
-  return static_cast<std::int32_t>(std::ranges::count_if(above, [&](float least) { return share > least; }));
-}
 
 Levels motion_levels(const Log& log, const DayGrid& grid, const LogTrack& track) {
   std::vector<float> known(grid.n_days * grid.n_bins), motion(known.size());
@@ -98,7 +78,7 @@ Levels motion_levels(const Log& log, const DayGrid& grid, const LogTrack& track)
   });
   Levels levels(known.size(), DaysChart::unknown);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (known[i] > 0.0F) levels[i] = level_of(motion[i] / known[i]);
+    if (known[i] > 0.0F) levels[i] = DaysChart::level_of(motion[i] / known[i]);
   }
   return levels;
 }
@@ -159,7 +139,8 @@ DaysChart days_of(const Log& log) {
     DaysChart::Day& shown = chart.days.emplace_back();
     shown.name = log.clock == LogClock::elapsed ? "" : name_of_day(grid, day);
     for (const NamedLevels& line : lines)
-      shown.lines.push_back({line.name, runs_of(line.levels.data() + day * grid.n_bins, grid.n_bins), line.shows});
+      shown.lines.push_back(
+          {line.name, DaysChart::runs_of(std::span(line.levels).subspan(day * grid.n_bins, grid.n_bins)), line.shows});
   }
   return chart;
 }

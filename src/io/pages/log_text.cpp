@@ -26,12 +26,12 @@ std::string time_in_words(double s) {
   return short_number(s / a_day) + " d";
 }
 
-std::string percent(double share) { return fixed(100.0 * share, share < 0.1 ? 2 : 1) + " %"; }
+std::string rare_or_not(double share) { return percent(share, share < 0.1 ? 2 : 1); }
 
 /// "1.1 s (38 %)"
 std::string floor_in_words(const LogLengths& lengths) {
   if (lengths.n == 0) return {};
-  return time_in_words(lengths.floor_s) + " (" + fixed(100.0 * lengths.floor_share, 0) + " %)";
+  return time_in_words(lengths.floor_s) + " (" + percent(lengths.floor_share) + ")";
 }
 
 std::string quantile_in_words(const LogLengths& lengths, double value) {
@@ -86,9 +86,9 @@ Table sensor_table(const Log& log, const LogFacts& facts) {
   const double whole_s = static_cast<double>(log.end_us - log.begin_us) / 1e6;
   for (const LogSensorFacts& sensor : facts.sensors) {
     const auto share = sensor.motion_share();
-    table.rows.push_back({sensor.name, share ? percent(*share) : "", percent(std::max(0.0, sensor.unknown_s) / whole_s),
-                          std::to_string(sensor.pulses.n), floor_in_words(sensor.pulses),
-                          sensor.hold_s ? time_in_words(*sensor.hold_s) : "not told",
+    table.rows.push_back({sensor.name, share ? rare_or_not(*share) : "",
+                          rare_or_not(std::max(0.0, sensor.unknown_s) / whole_s), std::to_string(sensor.pulses.n),
+                          floor_in_words(sensor.pulses), sensor.hold_s ? time_in_words(*sensor.hold_s) : "not told",
                           quantile_in_words(sensor.pulses, sensor.pulses.median_s),
                           quantile_in_words(sensor.pulses, sensor.pulses.q95_s), floor_in_words(sensor.pauses),
                           quantile_in_words(sensor.pauses, sensor.pauses.median_s),

@@ -9,7 +9,6 @@
 
 #include "io/files/compression.hpp"
 #include "io/files/input.hpp"
-#include "pirsim/columns.hpp"
 #include "reconcile/data/measured_log.hpp"
 #include "reconcile/data/measured_reader.hpp"
 #include "schema/clock.hpp"
@@ -71,10 +70,6 @@ std::vector<Series> in_units(const StudyFrame& frame, std::vector<Series> runs) 
   }
   std::ranges::stable_sort(all, {}, [](const Series& run) { return std::pair(run.trial, run.replicate); });
   return all;
-}
-
-std::vector<std::string> measured_columns(const StudyFrame& frame) {
-  return column_names<Sample>({.sensors = frame.sensors}, [](When when) { return when == When::always; });
 }
 
 std::vector<std::size_t> all_trials(const StudyFrame& frame) {

@@ -34,8 +34,6 @@ struct StudyFrame {
   bool operator==(const StudyFrame&) const = default;
 };
 [[nodiscard]] StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script);
-/// Of rows as somebody measures them: nobody counts people, and `time_s` is their only time.
-[[nodiscard]] std::vector<std::string> measured_columns(const StudyFrame& frame);
 /// Every trial of a study, by index.
 [[nodiscard]] std::vector<std::size_t> all_trials(const StudyFrame& frame);
 

@@ -39,15 +39,14 @@ std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_
 }  // namespace
 
 std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
-                                    const Omission& left_out) {
+                                    const std::string& left_out) {
   std::erase_if(rows, [&](std::size_t row) {
-    return std::ranges::any_of(table.rows[row].effects,
-                               [&](const EffectSpec& drawn) { return left_out.covers(drawn); });
+    return std::ranges::find(table.rows[row].effects, left_out, &EffectSpec::name) != table.rows[row].effects.end();
   });
   return rows;
 }
 
-SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out) {
+SeenRows seen_rows(const TableView& view, double alpha, const std::string& left_out) {
   const ReferenceTable& table = view.table();
   SeenRows seen{rows_of(table, 0, Part::calibration)};
   for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
@@ -55,7 +54,7 @@ SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out
   return seen;
 }
 
-LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, const Omission& left_out)
+LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, const std::string& left_out)
     : n_hypotheses(table.n_hypotheses()) {
   const auto add = [&](const std::vector<std::size_t>& more, const std::vector<int>& kinds_of_more,
                        std::vector<std::size_t>& part) {
@@ -68,7 +67,7 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, co
   };
   int n_kinds = 0;
   for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
-    if (left_out.is_whole() && table.hypothesis_name(hypothesis) == left_out.effect) continue;
+    if (table.hypothesis_name(hypothesis) == left_out) continue;
     const std::vector<std::size_t> training = still_made(table, rows_of(table, hypothesis, Part::training), left_out);
     const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
     if (training.size() < fewest_training ||

@@ -18,36 +18,24 @@ namespace pirsim::reconcile {
 /// as in data that a name is given to; or, of few, the likeliest to be seen.
 using SeenRows = std::vector<std::vector<std::size_t>>;
 
-/// What the catalogue is made to lack.
-struct Omission {
-  std::string effect = {};          ///< none of it is a candidate; empty: every one is
-  effects::Condition variant = {};  ///< of that effect, which stays a candidate without it; empty: the whole effect
-  [[nodiscard]] bool is_whole() const noexcept { return !effect.empty() && variant.choice.empty(); }
-  [[nodiscard]] bool covers(const EffectSpec& drawn) const {
-    if (drawn.name != effect) return false;
-    const auto word = drawn.choices.find(variant.choice);
-    return is_whole() || (word != drawn.choices.end() && word->second == variant.word);
-  }
-};
-
-/// Of these rows of a table, those that the catalogue still makes.
+/// Of these rows of a table, those that the catalogue without an effect makes; empty: of the whole.
 [[nodiscard]] std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
-                                                  const Omission& left_out);
+                                                  const std::string& left_out);
 
 /// alpha: level of the global test.
-[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out = {});
+[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha, const std::string& left_out = {});
 
 struct ClassifierSettings {
   double alpha = 0.05;  ///< level of the global test
   std::size_t trees = 300;
-  Omission left_out = {};
+  std::string left_out = {};  ///< effect that the catalogue is made to lack; empty: none
 };
 
 /// Rows of the table that its hypotheses are told apart by, with their classes. Hypotheses without enough datasets are
 /// none.
 struct LabelledRows {
   /// Throws Error(infeasible) without rows of nothing.
-  LabelledRows(const ReferenceTable& table, const SeenRows& seen, const Omission& left_out);
+  LabelledRows(const ReferenceTable& table, const SeenRows& seen, const std::string& left_out);
   /// (n_classes) -> (n_hypotheses); what is no candidate has 0.
   [[nodiscard]] std::vector<double> by_hypothesis(std::span<const double> of_classes) const;
 

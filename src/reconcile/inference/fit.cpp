@@ -212,7 +212,8 @@ struct EffectFitter::Learnt {
 };
 
 EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-                           std::vector<std::vector<std::size_t>> held_back, const Context& context, Omission left_out)
+                           std::vector<std::vector<std::size_t>> held_back, const Context& context,
+                           std::string left_out)
     : scene_(&scene),
       table_(&table),
       map_(&map),

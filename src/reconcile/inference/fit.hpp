@@ -78,7 +78,7 @@ class EffectFitter {
   /// scene, table and map must outlive it. held_back: (n_hypotheses) rows of each hypothesis outside the training part:
   /// give those in which a disagreement is seen, since nothing else is fitted. left_out: nothing is learnt from it.
   EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-               std::vector<std::vector<std::size_t>> held_back, const Context& context, Omission left_out = {});
+               std::vector<std::vector<std::size_t>> held_back, const Context& context, std::string left_out = {});
   ~EffectFitter();
   EffectFitter(EffectFitter&&) noexcept;
   EffectFitter& operator=(EffectFitter&&) noexcept;
@@ -96,7 +96,7 @@ class EffectFitter {
   const FeatureMap* map_;
   std::vector<std::vector<std::size_t>> held_back_;
   unsigned threads_;
-  Omission left_out_;
+  std::string left_out_;
   std::unique_ptr<Learnt[]> learnt_;  ///< (n_hypotheses)
 };
 

@@ -101,8 +101,7 @@ class Ensembles {
 double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
 
 std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
-                            const FeatureMap& map, double level, const Context& context,
-                            const std::function<void(std::size_t, std::uint32_t)>& on_look) {
+                            const FeatureMap& map, double level, const Context& context) {
   Ensembles ensembles(models, reference, context);
   std::vector<GlobalP> p(models.size());
   std::vector<std::size_t> in_doubt(models.size());
@@ -110,7 +109,6 @@ std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const Referenc
   const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
   for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
     if (in_doubt.empty()) break;
-    if (on_look) on_look(in_doubt.size(), n_realizations);
     ensembles.extend(in_doubt, n_realizations);
     std::vector<std::size_t> still;
     for (const std::size_t k : in_doubt) {

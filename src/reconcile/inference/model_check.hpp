@@ -33,10 +33,8 @@ struct GlobalP {
 /// that is refused is simulated in all of them, so that looking more than once refuses no more models than the level
 /// allows. All models share the tracing of a realization, and p of one doesn't depend on the others.
 ///
-/// map: features of the plain model, for the trials to be looked at. level: of the global test. on_look: is told how
-/// many models are still simulated, and in how many realizations.
+/// map: features of the plain model, for the trials to be looked at. level: of the global test.
 [[nodiscard]] std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
-                                          const FeatureMap& map, double level, const Context& context,
-                                          const std::function<void(std::size_t, std::uint32_t)>& on_look = {});
+                                          const FeatureMap& map, double level, const Context& context);
 
 }  // namespace pirsim::reconcile

@@ -349,7 +349,7 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
 }
 
 std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds, const VerifySettings& settings,
-                                 const Context& context, const std::function<void(std::size_t)>& on_judged) {
+                                 const Context& context) {
   std::vector<std::vector<FoldPatches>> found(claims.size());
   std::vector<std::size_t> held_out;
   for (const auto& fold : folds) {
@@ -359,10 +359,8 @@ std::vector<Verification> verify(std::span<const Claim> claims, const Folds& fol
   }
   std::ranges::sort(held_out);
   std::vector<Verification> results;
-  for (std::size_t i = 0; i < claims.size(); ++i) {
+  for (std::size_t i = 0; i < claims.size(); ++i)
     results.push_back(judge_claim(claims[i], folds, held_out, found[i], settings, context));
-    if (on_judged) on_judged(results.size());
-  }
   return results;
 }
 

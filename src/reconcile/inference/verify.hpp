@@ -43,10 +43,9 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// One a claim. Naming and fitting are repeated in every fold without its trials, step by step, and all effects
 /// together are judged on them against the plain model, that of the first step. What is not repeated is the simulation
 /// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
-/// than was applied stops there. on_judged is told how many claims are done.
+/// than was applied stops there.
 [[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
-                                               const VerifySettings& settings, const Context& context,
-                                               const std::function<void(std::size_t)>& on_judged = {});
+                                               const VerifySettings& settings, const Context& context);
 
 /// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.
 [[nodiscard]] Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind);

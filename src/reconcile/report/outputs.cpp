@@ -10,13 +10,14 @@
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "reconcile/validation/seal.hpp"
 #include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int report_schema = 1;
 
 Json to_json(const Location& location) {
   Json cells = Json::array(), envelope = Json::array();

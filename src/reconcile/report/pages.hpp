@@ -12,7 +12,6 @@
 #include "pirsim/reconcile.hpp"
 #include "reconcile/validation/plan.hpp"
 #include "reconcile/validation/selftest.hpp"
-#include "reconcile/validation/targets.hpp"
 
 namespace pirsim::reconcile {
 
@@ -72,16 +71,13 @@ struct Watched {
 /// plan.html, plan.json, plan.csv; the folder is made. Throws Error(io).
 void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by);
 
-/// Targets first, then what is taken for what, power by effect, calibration and coverage.
-[[nodiscard]] io::Report selftest_page(const SelftestResult& result, Geometry geometry);
+/// What is taken for what, power by effect, calibration and coverage.
+[[nodiscard]] io::Report selftest_page(const SelftestResult& result);
 [[nodiscard]] std::string to_markdown(const SelftestResult& result);
 [[nodiscard]] std::string to_csv(const SelftestResult& result);  ///< a row a case
-/// Targets, met or not, and the pairs that can't be told apart, as Markdown.
-[[nodiscard]] std::string targets_markdown(const SelftestResult& result, Geometry geometry);
-/// selftest.html, selftest.md (all rates and tables), targets.md and selftest.csv (a row a case); the folder is made.
+/// selftest.html, selftest.md (all rates and tables) and selftest.csv (a row a case); the folder is made.
 /// Throws Error(io).
-void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, Geometry geometry,
-                    const std::string& made_by);
+void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by);
 
 // What a reconciliation leaves behind, as files; the formats are described in docs/formats/reconcile.md.
 

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "pirsim/csv.hpp"
 #include "reconcile/report/pages.hpp"

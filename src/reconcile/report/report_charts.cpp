@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
@@ -162,7 +163,7 @@ io::BarChart ranking_chart(const Outcome& outcome) {
     }
     chart.bars.push_back({score.hypothesis,
                           score.probability,
-                          fixed(100.0 * score.probability, 0) + " %" + (candidate.kept ? ", kept" : ""),
+                          percent(score.probability) + (candidate.kept ? ", kept" : ""),
                           candidate.kept ? io::BarChart::Weight::strong : io::BarChart::Weight::faint,
                           {},
                           {},

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "core/text.hpp"
 #include "reconcile/report/data_sentences.hpp"
 #include "reconcile/report/sentences.hpp"
 
@@ -109,8 +110,7 @@ io::ReportSection reasons(const Outcome& outcome) {
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
     table.rows.push_back({candidate.score.hypothesis, std::string(name(candidate.family)),
-                          fixed(100.0 * candidate.score.probability, 0) + " %", short_number(candidate.score.p),
-                          in_words(candidate)});
+                          percent(candidate.score.probability), short_number(candidate.score.p), in_words(candidate)});
   }
   section.tables.push_back(std::move(table));
   return section;

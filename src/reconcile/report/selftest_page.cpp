@@ -1,24 +1,14 @@
 #include "reconcile/report/pages.hpp"
 
-#include <map>
+#include <algorithm>
 
+#include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 namespace {
-
-io::Table target_table(const SelftestResult& result, Geometry geometry) {
-  io::Table table{{"how often", "target", "share (95 % interval)", "met"}, {}};
-  for (const TargetResult& one : compare_with_targets(result, geometry)) {
-    std::string target = one.target.at_least > 0.0 ? "at least " + percent(one.target.at_least) : "";
-    if (one.target.at_most < 1.0) target += (target.empty() ? "" : ", ") + ("at most " + percent(one.target.at_most));
-    table.rows.push_back(
-        {std::string(in_words(one.target.rate)), target, with_interval(one.rate), std::string(in_words(one.reached))});
-  }
-  return table;
-}
 
 io::Table rate_table(const SelftestResult& result) {
   io::Table table{{"how often", "share (95 % interval)"}, {}};
@@ -54,13 +44,19 @@ io::ReportSection pairs(const SelftestResult& result) {
   return section;
 }
 
-std::string finding(const SelftestResult& result, Geometry geometry) {
-  std::map<Reached, std::size_t> n;
-  for (const TargetResult& one : compare_with_targets(result, geometry)) ++n[one.reached];
-  return "In " + std::to_string(result.cases.size()) + " simulated datasets, with something hidden or nothing, " +
-         std::to_string(n[Reached::yes]) + " targets are surely met, " + std::to_string(n[Reached::probably]) +
-         " are met with too few cases to be sure, " + std::to_string(n[Reached::hardly]) +
-         " are not met with too few cases to be sure, " + std::to_string(n[Reached::no]) + " are surely not met.";
+/// The shares that a reader asks for first.
+std::string finding(const SelftestResult& result) {
+  const std::vector<Rate> rates = rates_of(result);
+  std::string text =
+      "In " + std::to_string(result.cases.size()) + " simulated datasets, with something hidden or nothing: ";
+  std::string between;
+  for (const Counted what : {Counted::alarm_on_nothing, Counted::seen, Counted::exact_name, Counted::wrong_name}) {
+    const Rate& rate = *std::ranges::find(rates, what, &Rate::what);
+    if (rate.of == 0) continue;
+    text += between + std::string(in_words(what)) + " in " + percent(rate.value());
+    between = "; ";
+  }
+  return text + ".";
 }
 
 io::ReportSection power(const SelftestResult& result) {
@@ -167,12 +163,11 @@ io::BarChart coverage_chart(const SelftestResult& result) {
   return chart;
 }
 
-io::Report selftest_page(const SelftestResult& result, Geometry geometry) {
+io::Report selftest_page(const SelftestResult& result) {
   io::Report report;
   report.title = "Does reconciliation find what is hidden?";
-  report.finding = finding(result, geometry);
-  report.sections = {
-      {"Targets", {}, {target_table(result, geometry)}, {}}, confusion(result), pairs(result), power(result)};
+  report.finding = finding(result);
+  report.sections = {confusion(result), pairs(result), power(result)};
   io::ReportSection calibration{"Can probabilities and intervals be trusted", {}, {}, {}};
   calibration.paragraphs = {"Mean distance between probability and share: " + calibration_error(result) + "."};
   calibration.charts.emplace_back(reliability_chart(result));
@@ -183,14 +178,12 @@ io::Report selftest_page(const SelftestResult& result, Geometry geometry) {
   return report;
 }
 
-void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, Geometry geometry,
-                    const std::string& made_by) {
+void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   io::write_text_file(folder / "selftest.csv", to_csv(result));
-  io::write_text_file(folder / "targets.md", targets_markdown(result, geometry));
   io::write_text_file(folder / "selftest.md", to_markdown(result));
-  io::Report page = selftest_page(result, geometry);
+  io::Report page = selftest_page(result);
   page.footer = made_by;
   io::write_text_file(folder / "selftest.html", io::to_html(page));
 }

@@ -1,4 +1,4 @@
-// Scores, plans and what a self-test counts in words, and a self-test as text.
+// Plans and what a self-test counts in words, and a self-test as text.
 #include <array>
 #include <cmath>
 #include <iomanip>
@@ -10,12 +10,6 @@
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
-
-std::string sentence(const Score& score) {
-  return std::string(name(score.mark)) + ": hidden was " +
-         (score.hidden.empty() ? "nothing" : joined(score.hidden, ", ")) + ", the verdict was " +
-         std::string(name(score.verdict)) + (score.named.empty() ? "" : " (" + joined(score.named, ", ") + ")");
-}
 
 std::string name(const Design& design) {
   constexpr std::array<std::string_view, 6> names{"as planned", "",           "all again",
@@ -45,7 +39,7 @@ std::string sentence(const PlanResult& result) {
 }
 
 std::string_view in_words(Counted counted) noexcept {
-  constexpr std::array<std::string_view, 36> texts{
+  constexpr std::array<std::string_view, 24> texts{
       "a disagreement although nothing is hidden",
       "a name although nothing is hidden",
       "a disagreement seen",
@@ -58,37 +52,18 @@ std::string_view in_words(Counted counted) noexcept {
       "the truth in the set, given a disagreement",
       "none in the catalogue, given a disagreement",
       "parameters within their 90 % intervals",
-      "a gap that shrunk on held-out trials, given the right name",
-      "a gap closed on held-out trials, given the right name",
-      "nine tenths of what can be closed, given the right name",
-      "a gap that shrunk although nothing is hidden",
-      "applied, the right name: the model passes",
-      "applied, the name of an effect that the catalogue lacks: the model passes",
-      "applied, the name of an out-of-catalogue fault: the model passes",
       "an effect that the catalogue lacks: a disagreement seen",
       "an effect that the catalogue lacks: called none in the catalogue, given a disagreement",
       "an effect that the catalogue lacks and the whole one names: called none in the catalogue, given a disagreement",
       "an effect that the catalogue lacks: called by one name",
       "an effect that the catalogue lacks: called by one name of another family",
-      "a variant that the catalogue lacks: the right name, where the whole catalogue gives it",
       "people's motion, in the catalogue or not: called by a name of optics or electronics",
-      "an out-of-catalogue fault: a disagreement seen",
-      "an out-of-catalogue fault: called none in the catalogue, given a disagreement",
-      "an out-of-catalogue fault: called by one name",
-      "beyond the prior: exactly the right name, given a disagreement",
-      "beyond the prior: one wrong name",
       "two effects, first look: one or both in the set, given a disagreement",
       "two effects, first look: no single effect will do, given a disagreement",
       "two effects, first look: one wrong name",
       "seen and in the set",
       "taken for each other"};
   return texts[static_cast<std::size_t>(counted)];
-}
-
-std::string_view in_words(Reached reached) noexcept {
-  constexpr std::array<std::string_view, 5> names{"met", "met, but too few cases to be sure",
-                                                  "not met, but too few cases to be sure", "not met", "not tested"};
-  return names[static_cast<std::size_t>(reached)];
 }
 
 namespace {
@@ -99,20 +74,6 @@ std::string share(const Rate& rate) {
   out << std::fixed << std::setprecision(3) << rate.value() << " (" << rate.interval.low << "-" << rate.interval.high
       << ", " << rate.hits << " of " << rate.of << ")";
   return out.str();
-}
-
-/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was applied.
-std::string verification(const InjectedCase& c) {
-  if (!c.verification) return ",,";
-  const Verification& v = *c.verification;
-  return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
-}
-
-std::string bounds_of(const Target& target) {
-  if (target.at_least > 0.0 && target.at_most < 1.0) {
-    return fixed(target.at_least, 2) + " to " + fixed(target.at_most, 2);
-  }
-  return target.at_least > 0.0 ? "at least " + fixed(target.at_least, 2) : "at most " + fixed(target.at_most, 2);
 }
 
 }  // namespace
@@ -149,8 +110,7 @@ std::string to_markdown(const SelftestResult& result) {
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_applied,"
-         "hidden\n";
+  out << "dataset,kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,hidden\n";
   for (const InjectedCase& c : result.cases) {
     std::string named, hidden;
     for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
@@ -160,45 +120,9 @@ std::string to_csv(const SelftestResult& result) {
       }
       for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
     }
-    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
-        << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
-        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
-        << (c.applied ? io::csv_number(c.applied->p) : "") << ',' << io::csv_field(hidden) << '\n';
-  }
-  return out.str();
-}
-
-std::string targets_markdown(const SelftestResult& result, Geometry geometry) {
-  std::ostringstream out;
-  out << "| quantity | target | share (95 % interval) | cases | |\n|---|---|---|---:|---|\n";
-  for (const TargetResult& one : compare_with_targets(result, geometry)) {
-    out << "| " << in_words(one.target.rate) << " | " << bounds_of(one.target) << " | ";
-    if (one.rate.of > 0) {
-      out << fixed(one.rate.value(), 3) << " (" << fixed(one.rate.interval.low, 3) << "-"
-          << fixed(one.rate.interval.high, 3) << ")";
-    }
-    out << " | " << one.rate.of << " | " << in_words(one.reached) << " |\n";
-  }
-  out << "| calibration error of the probabilities | at most " << fixed(largest_calibration_error, 2) << " | ";
-  if (const stats::Reliability& counted = result.reliability; counted.bins.empty()) {
-    out << "| | " << in_words(Reached::not_tested) << " |\n";
-  } else {
-    const double error = counted.expected_calibration_error;
-    out << fixed(error, 3) << " | | " << in_words(error <= largest_calibration_error ? Reached::yes : Reached::no)
-        << " |\n";
-  }
-  const std::vector<ConfusedPair> pairs = confused_pairs(result);
-  if (pairs.empty()) {
-    out << "\nNo two effects are taken for each other in a tenth of their cases.\n";
-    return out.str();
-  }
-  out << "\nPairs that are taken for each other in a tenth of their cases or more (three cases at least):\n\n"
-         "| pair | share (95 % interval) | in the catalogue | why: what each does to the data |\n|---|---|---|---|\n";
-  for (const ConfusedPair& pair : pairs) {
-    out << "| " << pair.first << ", " << pair.second << " | " << fixed(pair.rate.value(), 2) << " ("
-        << fixed(pair.rate.interval.low, 2) << "-" << fixed(pair.rate.interval.high, 2) << ") | "
-        << (pair.expected ? "foreseen" : "not foreseen") << " | " << pair.first_does << " / " << pair.second_does
-        << " |\n";
+    out << c.injected << ',' << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict)
+        << ',' << named << ',' << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p)
+        << ',' << c.n_parameters << ',' << c.n_covered << ',' << io::csv_field(hidden) << '\n';
   }
   return out.str();
 }

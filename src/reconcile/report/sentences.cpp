@@ -40,8 +40,6 @@ std::string fixed(double value, int digits) {
   return out.str() == "-0" ? "0" : out.str();
 }
 
-std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
-
 std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
   constexpr double as_likely = 0.2;  // assumed: what is less probable isn't worth telling
   std::vector<std::string> rivals;

@@ -8,8 +8,7 @@
 #include "pirsim/reconcile.hpp"
 #include "reconcile/data/longer_study.hpp"
 #include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/seal.hpp"
-#include "reconcile/validation/targets.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::reconcile {
 
@@ -17,7 +16,6 @@ namespace pirsim::reconcile {
 /// missing may well be none of them.
 [[nodiscard]] bool is_unsupported(const Outcome& outcome);
 [[nodiscard]] std::string sentence(const PlanResult& result);
-[[nodiscard]] std::string sentence(const Score& score);
 [[nodiscard]] std::string sentence(const Residuals& residuals);
 /// Beside the effects of a verdict; empty if nothing is left over.
 [[nodiscard]] std::string sentence_of_rest(const Residuals& rest);
@@ -44,7 +42,6 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string when_of(const ResidualDriver& driver);
 [[nodiscard]] std::string what_of(const ResidualDriver& driver);
 [[nodiscard]] std::string_view in_words(Counted counted) noexcept;
-[[nodiscard]] std::string_view in_words(Reached reached) noexcept;
 /// Short, and as part of a sentence: what is measured.
 [[nodiscard]] std::string name(const Design& design);
 [[nodiscard]] std::string what_of(const Design& design);
@@ -63,7 +60,5 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
 /// So many digits after the point; never "-0".
 [[nodiscard]] std::string fixed(double value, int digits);
-/// Of a share: "12 %".
-[[nodiscard]] std::string percent(double share);
 
 }  // namespace pirsim::reconcile

@@ -296,13 +296,6 @@ std::string in_words(const Stage& stage) {
       return "judging";
     case What::judging_without:
       return "judging by a catalogue that lacks " + sum(stage.effects);
-    case What::searching_anew:
-      return "finding anew without held-out trials what is in " + std::to_string(stage.n) + " datasets";
-    case What::verified:
-      return "judged on held-out trials: " + std::to_string(stage.n) + " of " + std::to_string(stage.of);
-    case What::checking_models:
-      return "named effects applied: " + std::to_string(stage.n) + " of " + std::to_string(stage.of) + " in " +
-             std::to_string(stage.n_realizations) + " realizations";
     case What::judging_planned:
       return "judging what is planned";
     case What::judging_trial:

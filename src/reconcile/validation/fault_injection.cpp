@@ -6,23 +6,19 @@
 #include "effects/catalogue.hpp"
 #include "reconcile/ensemble/table_store.hpp"
 #include "reconcile/inference/kinds.hpp"
-#include "reconcile/validation/out_of_catalogue.hpp"
 #include "reconcile/validation/selftest.hpp"
-#include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 constexpr std::uint32_t first_injected_realization = 1U << 25U;  ///< realizations that no table has seen
 constexpr std::uint32_t most_draws = 200;                        ///< for parameters of the strength wanted
-constexpr double beyond = 1.25;  ///< strengths and nuisance outside their priors, times their width (assumed)
 
 /// What one dataset is to be.
 struct Plan {
   CaseKind kind = CaseKind::nothing;
   Strength strength = Strength::none;
-  const effects::Effect* effect = nullptr;  ///< of one effect, or one beyond the prior
-  const OutOfCatalogueFault* fault = nullptr;
+  const effects::Effect* effect = nullptr;  ///< of one effect
 };
 
 bool comes_in_strengths(const EffectSpec& spec) {
@@ -31,19 +27,7 @@ bool comes_in_strengths(const EffectSpec& spec) {
 }
 
 bool has_strength(const EffectSpec& spec, Strength wanted) {
-  return wanted == Strength::beyond || !comes_in_strengths(spec) || strength_of(spec) == wanted;
-}
-
-/// Moves the strength to where the prior ends and beyond, on the side where it lies.
-void push_beyond(EffectSpec& spec) {
-  const effects::ParameterInfo& first = effects::strength_parameter(spec);
-  double& value = spec.parameters.at(first.name);
-  const bool upwards = value >= first.off;
-  const double end = upwards ? first.high : first.low;
-  const double natural = first.scale != effects::Scale::logarithmic ? first.off + beyond * (end - first.off)
-                         : upwards                                  ? end * beyond
-                                                                    : end / beyond;
-  value = std::clamp(first.scale == effects::Scale::whole ? std::round(natural) : natural, first.least, first.most);
+  return !comes_in_strengths(spec) || strength_of(spec) == wanted;
 }
 
 std::vector<Plan> plans_of(const ReferenceStudy& reference, const SelftestSettings& settings) {
@@ -51,62 +35,31 @@ std::vector<Plan> plans_of(const ReferenceStudy& reference, const SelftestSettin
   for (const std::string& name : reference.table.effects) {
     const effects::Effect* effect = &effects::find(name);
     for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      plans.insert(plans.end(), settings.n_injected, Plan{CaseKind::one, strength, effect, nullptr});
+      plans.insert(plans.end(), settings.n_injected, Plan{CaseKind::one, strength, effect});
     }
-    plans.insert(plans.end(), settings.n_beyond, Plan{CaseKind::beyond_prior, Strength::beyond, effect, nullptr});
   }
   const std::uint32_t n_pairs = reference.table.effects.size() < 2 ? 0 : settings.n_pairs;
-  plans.insert(plans.end(), n_pairs, Plan{CaseKind::two, Strength::none, nullptr, nullptr});
-  for (const OutOfCatalogueFault& fault : out_of_catalogue_faults()) {
-    plans.insert(plans.end(), settings.n_out_of_catalogue,
-                 Plan{CaseKind::out_of_catalogue, Strength::none, nullptr, &fault});
-  }
+  plans.insert(plans.end(), n_pairs, Plan{CaseKind::two, Strength::none, nullptr});
   return plans;
-}
-
-/// The fault in every run of a dataset.
-void apply_fault(const OutOfCatalogueFault& fault, const StudyFrame& frame, std::vector<Series>& data, Stream& stream) {
-  const std::size_t n_sensors = frame.sensors.size();
-  const std::size_t sensor = stream.index(static_cast<std::uint32_t>(n_sensors));
-  for (Series& series : data) {
-    std::vector<Sample> rows(series.n_rows(n_sensors));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto first = series.bits.begin() + static_cast<std::ptrdiff_t>(i * n_sensors);
-      rows[i].time_s = frame.window_s * static_cast<double>(i + 1);
-      rows[i].bits.assign(first, first + static_cast<std::ptrdiff_t>(n_sensors));
-    }
-    fault.apply(rows, sensor, stream);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      std::ranges::copy(rows[i].bits, series.bits.begin() + static_cast<std::ptrdiff_t>(i * n_sensors));
-    }
-  }
 }
 
 class InjectionJob {
  public:
   InjectionJob(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed)
-      : reference_(reference),
-        settings_(settings),
-        seed_(seed),
-        plans_(plans_of(reference, settings)),
-        wide_source_(reference.source) {
-    each_number(wide_source_.nuisance, [](const char*, double& width, const auto&) { width *= beyond; });
-  }
+      : reference_(reference), settings_(settings), seed_(seed), plans_(plans_of(reference, settings)) {}
   [[nodiscard]] const std::vector<Plan>& plans() const { return plans_; }
 
   [[nodiscard]] TableChunk run(std::uint32_t index) const {
     const Plan& plan = plans_[index];
     TableChunk chunk;
-    const RealizationSource& source = plan.kind == CaseKind::beyond_prior ? wide_source_ : reference_.source;
-    const SimulatedRealization realization(source, reference_.frame, first_injected_realization + index,
+    const SimulatedRealization realization(reference_.source, reference_.frame, first_injected_realization + index,
                                            settings_.n_replicates);
     for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
-      Stream stream({seed_, index, attempt, Purpose::sealed_answer});
+      Stream stream({seed_, index, attempt, Purpose::injected_effects});
       const std::optional<std::vector<EffectSpec>> effects = draw(plan, realization.drawn(), stream);
       if (!effects) continue;
       auto data = realization.with_effects(*effects, 0, settings_.n_replicates);
       if (!data) continue;
-      if (plan.fault != nullptr) apply_fault(*plan.fault, reference_.frame, *data, stream);
       chunk.datasets.push_back({{index, first_injected_realization + index, *effects}, std::move(*data)});
       return chunk;
     }
@@ -129,7 +82,6 @@ class InjectionJob {
     for (const effects::Effect* effect : wanted) {
       drawn.push_back(effects::draw_from_prior(*effect, realization.scene, realization.script, stream));
       if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
-      if (plan.kind == CaseKind::beyond_prior) push_beyond(drawn.back());
     }
     return drawn;
   }
@@ -138,14 +90,12 @@ class InjectionJob {
   const SelftestSettings& settings_;
   std::uint64_t seed_;
   std::vector<Plan> plans_;
-  RealizationSource wide_source_;
 };
 
 std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed) {
   std::string text = "injected in " + reference.key;
   for (const std::uint64_t n : {static_cast<std::uint64_t>(settings.n_replicates), std::uint64_t{settings.n_nulls},
-                                std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_beyond},
-                                std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, seed}) {
+                                std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_pairs}, seed}) {
     text += ' ' + std::to_string(n);
   }
   return sha256(text);
@@ -170,7 +120,7 @@ Strength strength_of(const EffectSpec& spec) {
 }
 
 std::string InjectedDataset::truth() const {
-  std::string text = fault;
+  std::string text;
   for (const EffectSpec& effect : effects) text += (text.empty() ? "" : " + ") + effect.name;
   return text.empty() ? "nothing" : text;
 }
@@ -191,11 +141,7 @@ std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const Selft
                           statistics);
         for (SimulatedDataset& dataset : chunk.datasets) {
           const Plan& plan = job.plans()[dataset.row.hypothesis];
-          injected.push_back({plan.kind,
-                              plan.strength,
-                              plan.fault == nullptr ? "" : plan.fault->name,
-                              std::move(dataset.row.effects),
-                              {}});
+          injected.push_back({plan.kind, plan.strength, std::move(dataset.row.effects), {}});
         }
       });
   for (std::size_t i = 0; i < injected.size(); ++i) {

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+#include <map>
 #include <numeric>
+#include <utility>
 
-#include "core/digest.hpp"
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/inference/model_check.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -56,7 +55,6 @@ InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, con
     return result;
   }
   result.named.resize(1);
-  result.fitted = fitted;
   result.family = effects::find(result.named.front()).info.family;
   if (kind == CaseKind::one && is_named(result, result.truth)) {
     check_coverage(fitted, injected.effects.front(), result);
@@ -77,99 +75,6 @@ void judge_all(const ReferenceStudy& reference, const Analyst& analyst, const st
         return result;
       },
       [&](InjectedCase& one) { cases.push_back(std::move(one)); });
-}
-
-/// n of the cases that are asked for, by index, evenly spread.
-template <typename Asked>
-std::vector<std::size_t> some_of(const std::vector<InjectedCase>& cases, std::size_t n, const Asked& asked) {
-  std::vector<std::size_t> all, chosen;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (asked(cases[i])) all.push_back(i);
-  }
-  n = std::min(n, all.size());
-  for (std::size_t k = 0; k < n; ++k) chosen.push_back(all[k * all.size() / n]);
-  return chosen;
-}
-
-bool has_right_name(const InjectedCase& c) { return c.kind == CaseKind::one && is_named(c, c.truth); }
-bool has_name_though(CaseKind kind, const InjectedCase& c) { return c.kind == kind && c.verdict == Verdict::named; }
-
-/// Which datasets are judged on held-out trials, by index.
-std::vector<std::size_t> to_verify(const std::vector<InjectedCase>& cases, std::size_t n_right) {
-  std::vector<std::size_t> chosen = some_of(
-      cases, cases.size(), [](const InjectedCase& c) { return c.kind == CaseKind::nothing && !c.named.empty(); });
-  std::ranges::copy(some_of(cases, n_right, has_right_name), std::back_inserter(chosen));
-  return chosen;
-}
-
-void verify_some(const ReferenceStudy& reference, const SeenRows& seen, const std::vector<InjectedDataset>& injected,
-                 const SelftestSettings& settings, const Context& context, std::vector<InjectedCase>& cases) {
-  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified), trials = all_trials(reference.frame);
-  if (chosen.empty() || trials.size() < 2) return;  // of one trial nothing can be held out
-  context.begin({Stage::What::searching_anew, {}, chosen.size()});
-  std::vector<Claim> claims;
-  for (const std::size_t i : chosen) {
-    const std::vector<std::string>& named = cases[i].named;
-    claims.push_back({{{&reference, injected[cases[i].injected].statistics, named.front(), seen}}, named});
-  }
-  const Settings& analysis = settings.analysis;
-  const Folds folds = usual_folds(sha256(reference.key), trials, reference.shape.kind);
-  std::vector<Verification> found =
-      verify(claims, folds, {analysis.alpha, analysis.verify_realizations}, context, [&](std::size_t done) {
-        context.begin({Stage::What::verified, {}, done, claims.size()});
-      });
-
-  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
-}
-
-/// Can the model with the effect named have made the data?
-void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const std::vector<InjectedDataset>& injected,
-                const SelftestSettings& settings, const Context& context, std::vector<InjectedCase>& cases) {
-  std::vector<std::size_t> chosen = some_of(cases, settings.n_verified, has_right_name);
-  for (const CaseKind kind : {CaseKind::left_out, CaseKind::out_of_catalogue}) {
-    std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
-                      std::back_inserter(chosen));
-  }
-  if (chosen.empty()) return;
-  const Settings& analysis = settings.analysis;
-  const double level = level_with(1, analysis.alpha);
-  std::vector<PatchedModel> models;
-  for (const std::size_t i : chosen)
-    models.push_back({std::span(&*cases[i].fitted, 1), injected[cases[i].injected].statistics});
-  const std::vector<GlobalP> p = p_with(models, reference, map, level, context, [&](std::size_t n, std::uint32_t in) {
-    context.begin({Stage::What::checking_models, {}, n, models.size(), in});
-  });
-
-  for (std::size_t k = 0; k < chosen.size(); ++k)
-    cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k].p};
-}
-
-/// Whether the table has the effect both in the variant left out and in others.
-bool leaves_others(const Omission& left_out, const ReferenceTable& table) {
-  bool covered = false, others = false;
-  for (const TableRow& row : table.rows) {
-    for (const EffectSpec& effect : row.effects)
-      if (effect.name == left_out.effect) (left_out.covers(effect) ? covered : others) = true;
-  }
-  return covered && others;
-}
-
-/// What the catalogue is made to lack, one after the other.
-std::vector<std::pair<CaseKind, Omission>> omissions_of(const ReferenceTable& table, LeaveOut leave_out) {
-  std::vector<std::pair<CaseKind, Omission>> omissions;
-  if (leave_out == LeaveOut::none) return omissions;
-  for (const std::string& effect : table.effects) omissions.push_back({CaseKind::left_out, {effect, {}}});
-  if (leave_out == LeaveOut::effects) return omissions;
-  for (const std::string& effect : table.effects) {
-    for (const effects::ChoiceInfo& choice : effects::find(effect).info.choices) {
-      if (choice.kind != effects::ChoiceKind::variant) continue;
-      for (const std::string& word : choice.words) {
-        const Omission variant{effect, {choice.name, word}};
-        if (leaves_others(variant, table)) omissions.push_back({CaseKind::left_out_variant, variant});
-      }
-    }
-  }
-  return omissions;
 }
 
 /// Of datasets with a disagreement: elsewhere no probability is told.
@@ -241,49 +146,6 @@ void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
                              wrong_family.rate(), in_set.rate(), none.rate(), coverage.rate()});
 }
 
-void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
-  constexpr double nearly_all = 0.9;
-  Counter shrunk(Counted::shrunk), closed(Counted::closed), most(Counted::most_closed),
-      on_nulls(Counted::shrunk_on_nothing);
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind == CaseKind::nothing) on_nulls.count(c.verification && c.verification->shrunk);
-    if (c.kind != CaseKind::one || !c.verification) continue;
-    shrunk.count(c.verification->shrunk);
-    closed.count(c.verification->closed);
-    const Verification& v = *c.verification;
-    const bool nothing_to_close = v.n_trials > 0 && v.before.energy_score <= v.noise_floor;
-    if (!nothing_to_close) most.count(v.share_closed >= nearly_all);
-  }
-  if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
-}
-
-void count_applied(const SelftestResult& result, std::vector<Rate>& rates) {
-  constexpr std::array<std::pair<CaseKind, Counted>, 3> kinds{
-      {{CaseKind::one, Counted::right_passes},
-       {CaseKind::left_out, Counted::left_out_passes},
-       {CaseKind::out_of_catalogue, Counted::out_of_catalogue_passes}}};
-  for (const auto& [kind, what] : kinds) {
-    Counter passes(what);
-
-    for (const InjectedCase& c : result.cases) {
-      if (c.kind == kind && c.applied) passes.count(c.applied->passes());
-    }
-    if (passes.rate().of > 0) rates.push_back(passes.rate());
-  }
-}
-
-void count_out_of_catalogue(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter seen(Counted::out_of_catalogue_seen), none(Counted::out_of_catalogue_none),
-      misnamed(Counted::out_of_catalogue_named);
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::out_of_catalogue) continue;
-    seen.count(c.seen());
-    misnamed.count(c.verdict == Verdict::named);
-    if (c.seen()) none.count(c.verdict == Verdict::none_in_catalogue);
-  }
-  if (seen.rate().of > 0) rates.insert(rates.end(), {seen.rate(), none.rate(), misnamed.rate()});
-}
-
 void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter seen(Counted::left_out_seen), none(Counted::left_out_none), told_none(Counted::told_left_out_none),
       misnamed(Counted::left_out_named), outside(Counted::left_out_named_outside);
@@ -301,15 +163,6 @@ void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
     rates.insert(rates.end(), {seen.rate(), none.rate(), told_none.rate(), misnamed.rate(), outside.rate()});
 }
 
-void count_variants(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter named(Counted::variant_named);
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind == CaseKind::left_out_variant && is_named(result.cases[c.injected], c.truth))
-      named.count(is_named(c, c.truth));
-  }
-  if (named.rate().of > 0) rates.push_back(named.rate());
-}
-
 void count_motion(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter as_sensor(Counted::motion_as_sensor);
   for (const InjectedCase& c : result.cases) {
@@ -319,16 +172,6 @@ void count_motion(const SelftestResult& result, std::vector<Rate>& rates) {
     as_sensor.count(c.verdict == Verdict::named && is_sensor);
   }
   if (as_sensor.rate().of > 0) rates.push_back(as_sensor.rate());
-}
-
-void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter exact(Counted::beyond_exact), wrong(Counted::beyond_wrong);
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::beyond_prior) continue;
-    wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
-    if (c.seen()) exact.count(is_named(c, c.truth));
-  }
-  if (wrong.rate().of > 0) rates.insert(rates.end(), {exact.rate(), wrong.rate()});
 }
 
 void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
@@ -347,16 +190,22 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
   if (wrong.rate().of > 0) rates.insert(rates.end(), {one.rate(), none.rate(), wrong.rate()});
 }
 
+bool names_other(const std::string& effect, const std::string& other) {
+  const std::vector<std::string>& names = effects::find(effect).info.confused_with;
+  return std::ranges::find(names, other) != names.end();
+}
+
+const std::string& fingerprint_of(const std::string& effect) { return effects::find(effect).info.fingerprint; }
+
 }  // namespace
 
 std::string_view name(CaseKind kind) noexcept {
-  constexpr std::array<std::string_view, 7> names{"nothing",          "one", "beyond_prior",    "left_out",
-                                                  "left_out_variant", "two", "out_of_catalogue"};
+  constexpr std::array<std::string_view, 4> names{"nothing", "one", "left_out", "two"};
   return names[static_cast<std::size_t>(kind)];
 }
 
 std::string_view name(Strength strength) noexcept {
-  constexpr std::array<std::string_view, 5> names{"none", "weak", "medium", "strong", "beyond"};
+  constexpr std::array<std::string_view, 4> names{"none", "weak", "medium", "strong"};
   return names[static_cast<std::size_t>(strength)];
 }
 
@@ -364,7 +213,7 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
                      const SelftestSettings& settings, const Context& context) {
   const Settings& analysis = settings.analysis;
   const auto view = reference.view(all_trials(reference.frame), context.threads);
-  const auto analyst_without = [&](const Omission& left_out) {
+  const auto analyst_without = [&](const std::string& left_out) {
     return Analyst(view, {analysis.alpha, analysis.trees, left_out}, context);
   };
   SelftestResult result;
@@ -375,18 +224,15 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
   std::iota(all.begin(), all.end(), std::size_t{0});
   judge_all(reference, analyst_without({}), injected, all, {}, context.threads, result.cases);
   result.reliability = reliability_of(result);
-  if (settings.n_verified > 0)
-    verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, context, result.cases);
-  for (const auto& [kind, omission] : omissions_of(reference.table, settings.leave_out)) {
-    const std::string& variant = omission.variant.word;
-    context.begin({Stage::What::judging_without, {omission.effect + (variant.empty() ? "" : " " + variant)}});
+  if (settings.leave_out == LeaveOut::none) return result;
+  for (const std::string& effect : reference.table.effects) {
+    context.begin({Stage::What::judging_without, {effect}});
     std::vector<std::size_t> own;
     for (const std::size_t i : all) {
-      if (injected[i].kind == CaseKind::one && omission.covers(injected[i].effects.front())) own.push_back(i);
+      if (injected[i].kind == CaseKind::one && injected[i].effects.front().name == effect) own.push_back(i);
     }
-    judge_all(reference, analyst_without(omission), injected, own, kind, context.threads, result.cases);
+    judge_all(reference, analyst_without(effect), injected, own, CaseKind::left_out, context.threads, result.cases);
   }
-  apply_some(reference, view->map(), injected, settings, context, result.cases);
   return result;
 }
 
@@ -405,13 +251,8 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
   std::vector<Rate> rates;
   count_nulls(result, rates);
   count_injected(result, rates);
-  count_verified(result, rates);
-  count_applied(result, rates);
   count_left_out(result, rates);
-  count_variants(result, rates);
   count_motion(result, rates);
-  count_out_of_catalogue(result, rates);
-  count_beyond(result, rates);
   count_pairs(result, rates);
   return rates;
 }
@@ -429,6 +270,28 @@ std::vector<Rate> power_of(const SelftestResult& result, const std::string& effe
     rates.push_back(found.rate());
   }
   return rates;
+}
+
+std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share) {
+  std::map<std::string, std::size_t> cases;
+  std::map<std::pair<std::string, std::string>, std::size_t> taken;  // in alphabetical order
+  for (const InjectedCase& c : result.cases) {
+    if (c.kind != CaseKind::one || !c.seen()) continue;
+    ++cases[c.truth];
+    if (c.likeliest != c.truth && c.likeliest != "nothing") ++taken[std::minmax(c.truth, c.likeliest)];
+  }
+  constexpr std::size_t fewest_cases = 3;
+  std::vector<ConfusedPair> pairs;
+  for (const auto& [names, hits] : taken) {
+    const auto& [a, b] = names;
+    Rate rate{Counted::confused, hits, cases[a] + cases[b], {}, Strength::none};
+    if (hits < fewest_cases || rate.value() < least_share) continue;
+    rate.interval = stats::clopper_pearson(rate.hits, rate.of);
+    pairs.push_back(
+        {a, b, std::move(rate), names_other(a, b) || names_other(b, a), fingerprint_of(a), fingerprint_of(b)});
+  }
+  std::ranges::stable_sort(pairs, std::ranges::greater{}, [](const ConfusedPair& pair) { return pair.rate.value(); });
+  return pairs;
 }
 
 std::vector<std::vector<double>> confusion_of(const SelftestResult& result) {

@@ -11,7 +11,6 @@
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/reference_study.hpp"
-#include "reconcile/inference/verify.hpp"
 #include "stats/intervals.hpp"
 #include "stats/pooled_classifier.hpp"
 
@@ -19,25 +18,17 @@ namespace pirsim::reconcile {
 
 enum class LeaveOut {
   none,
-  effects,  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
-  variants  ///< the same, and those with one variant of an effect by a catalogue that lacks the variant
+  effects  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
 };
 
 struct SelftestSettings {
   Settings analysis;
   Measured::Kind kind = Measured::Kind::series;
-  int n_replicates = 1;                  ///< runs of every trial in an injected dataset
-  std::uint32_t n_nulls = 60;            ///< datasets with nothing hidden
-  std::uint32_t n_injected = 10;         ///< datasets of every effect and strength
-  std::uint32_t n_beyond = 0;            ///< of every effect, stronger than its prior, in rooms wider than theirs
-  std::uint32_t n_pairs = 0;             ///< datasets with two effects
-  std::uint32_t n_out_of_catalogue = 0;  ///< of every out-of-catalogue fault
+  int n_replicates = 1;           ///< runs of every trial in an injected dataset
+  std::uint32_t n_nulls = 60;     ///< datasets with nothing hidden
+  std::uint32_t n_injected = 10;  ///< datasets of every effect and strength
+  std::uint32_t n_pairs = 0;      ///< datasets with two effects
   LeaveOut leave_out = LeaveOut::none;
-  /// Datasets with the right name, spread over effects and strengths, whose effect is applied and judged on held-out
-  /// trials; if any, so are all with nothing hidden in which something is suspected. And so many names each that are
-  /// right, that an effect got which the catalogue lacks, and that an out-of-catalogue fault got, are applied to see
-  /// whether the model with them can have made the data.
-  std::uint32_t n_verified = 0;
   /// Keeps finished datasets; its name is made longer by what they depend on. Empty: they are not kept.
   std::filesystem::path injected_folder = {};
 };
@@ -45,14 +36,11 @@ struct SelftestSettings {
 /// What is hidden in a dataset, and from whom.
 enum class CaseKind {
   nothing,
-  one,               ///< effect of the catalogue, strength from its prior
-  beyond_prior,      ///< stronger than any in the table, in a room drawn from a wider nuisance
-  left_out,          ///< effect that the catalogue lacks when this dataset is judged
-  left_out_variant,  ///< the catalogue has the effect in other variants only
-  two,               ///< effects together
-  out_of_catalogue   ///< something that no catalogue has
+  one,       ///< effect of the catalogue, strength from its prior
+  left_out,  ///< effect that the catalogue lacks when this dataset is judged
+  two        ///< effects together
 };
-enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
+enum class Strength { none, weak, medium, strong };  ///< thirds of the prior, by distance from off
 [[nodiscard]] std::string_view name(CaseKind kind) noexcept;
 [[nodiscard]] std::string_view name(Strength strength) noexcept;
 /// By the parameter that names an effect's strength; medium for an effect that is there or not.
@@ -62,17 +50,16 @@ enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the 
 struct InjectedDataset {
   CaseKind kind = CaseKind::nothing;
   Strength strength = Strength::none;
-  std::string fault;                ///< name; empty without one
   std::vector<EffectSpec> effects;  ///< as drawn
   std::vector<float> statistics;    ///< (n_statistics)
 
-  [[nodiscard]] std::string truth() const;  ///< effects and fault in words; "nothing"
+  [[nodiscard]] std::string truth() const;  ///< effects in words; "nothing"
 };
 
 /// One dataset and what became of it.
 struct InjectedCase {
   CaseKind kind = CaseKind::nothing;
-  std::string truth;  ///< "nothing", an effect, an out-of-catalogue fault, or "one + another"
+  std::string truth;  ///< "nothing", an effect, or "one + another"
   Strength strength = Strength::none;
   std::vector<EffectSpec> effects;
   Verdict verdict = Verdict::no_disagreement;
@@ -84,11 +71,7 @@ struct InjectedCase {
   std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
   std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
 
-  std::size_t injected = 0;            ///< which dataset it is of those that were injected
-  std::optional<FittedEffect> fitted;  ///< of the effect named
-
-  std::optional<Verification> verification;  ///< of the effect named, or of the first that can't be ruled out
-  std::optional<Look> applied;               ///< what the model with the effect named looks like
+  std::size_t injected = 0;  ///< which dataset it is of those that were injected
 
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
@@ -107,26 +90,13 @@ enum class Counted {
   truth_in_set,
   none_in_catalogue,
   parameters_covered,  ///< by their 90 % intervals
-  shrunk,              ///< gaps on held-out trials, given the right name
-  closed,
-  most_closed,  ///< nine tenths of what can be closed
-  shrunk_on_nothing,
-  right_passes,  ///< the model with the right name applied
-  left_out_passes,
-  out_of_catalogue_passes,
   left_out_seen,
   left_out_none,       ///< called none in the catalogue, given a disagreement
   told_left_out_none,  ///< the same of those that the whole catalogue gives the right name: others are as good as
                        ///< nested
   left_out_named,
   left_out_named_outside,  ///< by a name of another family
-  variant_named,           ///< by the others, given that the whole catalogue gives the right name
   motion_as_sensor,        ///< people's motion, in or left out of the catalogue: a name of optics or electronics
-  out_of_catalogue_seen,
-  out_of_catalogue_none,
-  out_of_catalogue_named,
-  beyond_exact,
-  beyond_wrong,
   pair_in_set,
   pair_none,
   pair_wrong,
@@ -163,11 +133,19 @@ struct SelftestResult {
                                       const SelftestSettings& settings, const Context& context = {});
 
 /// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
-/// coverage; gaps closed on held-out trials; what becomes of effects that the catalogue lacks, of pairs and of
-/// strengths beyond the prior.
+/// coverage; what becomes of effects that the catalogue lacks, and of pairs.
 [[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
 /// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
 [[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);
+/// Two effects that are often taken for each other.
+struct ConfusedPair {
+  std::string first, second;
+  Rate rate;                            ///< either taken for the other, of both one's cases with a disagreement
+  bool expected = false;                ///< the catalogue names one as confused with the other
+  std::string first_does, second_does;  ///< fingerprints
+};
+/// Pairs whose share is at least so great, in three cases or more; the most confused first.
+[[nodiscard]] std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share = 0.1);
 /// (n_hypotheses x n_hypotheses) row: truth, column: likeliest hypothesis; shares of the row, of cases with a
 /// disagreement.
 [[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);

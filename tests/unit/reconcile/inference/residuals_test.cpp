@@ -1,11 +1,11 @@
 // Things that no catalogue holds, injected in the bits: the sentence must say who, when and how.
 #include <cmath>
+#include <numbers>
 
 #include "pirsim/study.hpp"
 #include "reconcile/inference/reference_study.hpp"
 #include "reconcile/inference/residuals.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "reconcile/validation/out_of_catalogue.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 
@@ -60,9 +60,38 @@ Measured injected(std::uint32_t realization, const Change& change) {
 
 Residuals explained(const Measured& measured) { return explain_residuals(reference_study(), measured, 0.05, {}); }
 
+struct OutOfCatalogueFault {
+  std::string name;
+  void (*apply)(std::vector<Sample>& rows, std::size_t sensor, Stream& stream);  ///< to the rows of one run
+};
+
+/// A sensor says the opposite during the middle third of a run, as one with a loose pull-up does.
+void invert_for_a_while(std::vector<Sample>& rows, std::size_t sensor, Stream& /*stream*/) {
+  for (std::size_t i = rows.size() / 3; i < 2 * rows.size() / 3; ++i) rows[i].bits[sensor] ^= 1U;
+}
+
+/// All sensors grow dull and keen again together, over 90 s (assumed).
+void wax_and_wane(std::vector<Sample>& rows, std::size_t /*sensor*/, Stream& stream) {
+  constexpr double period_s = 90.0;
+  for (Sample& row : rows) {
+    const double missed = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * row.time_s / period_s);
+    for (std::uint8_t& bit : row.bits) {
+      if (stream.uniform() < missed) bit = 0;
+    }
+  }
+}
+
+/// A sensor's wire picks up its neighbour's pulses: what that one says is said by both.
+void pick_up_neighbour(std::vector<Sample>& rows, std::size_t sensor, Stream& /*stream*/) {
+  for (Sample& row : rows) row.bits[sensor] |= row.bits[(sensor + 1) % row.bits.size()];
+}
+
+const std::vector<OutOfCatalogueFault> out_of_catalogue_faults{{"inverted_for_a_while", invert_for_a_while},
+                                                               {"waxing_and_waning", wax_and_wane},
+                                                               {"picked_up_neighbour", pick_up_neighbour}};
+
 Change fault(const std::string& name, std::size_t sensor) {
-  const auto& all = out_of_catalogue_faults();
-  const auto which = std::ranges::find(all, name, &OutOfCatalogueFault::name);
+  const auto which = std::ranges::find(out_of_catalogue_faults, name, &OutOfCatalogueFault::name);
   return [which, sensor](std::vector<Sample>& rows, Stream& stream) { which->apply(rows, sensor, stream); };
 }
 

@@ -23,29 +23,6 @@ ReferenceStudy reference_study(const Settings& analysis) {
 
 }  // namespace
 
-TEST_CASE("strengths beyond the prior lie on both sides of it where it has two", "[reconcile][selftest]") {
-  SelftestSettings settings;
-  settings.analysis.table = {60, 60, 60, {"range_scale", "false_triggers"}};
-  settings.n_nulls = 0;
-  settings.n_injected = 0;
-  settings.n_beyond = 12;  // of one side only: once in 2,000 seeds
-  const ReferenceStudy reference = reference_study(settings.analysis);
-  std::size_t n_weaker = 0, n_stronger = 0, n_rates = 0;
-  for (const InjectedDataset& injected : inject(reference, settings)) {
-    const EffectSpec& effect = injected.effects.front();
-    const effects::ParameterInfo& first = effects::strength_parameter(effect);
-    const double value = effect.parameters.at(first.name);
-    INFO(effect.name << ' ' << value);
-    CHECK((value < first.low || value > first.high));
-    if (effect.name == "range_scale") ++(value < 1.0 ? n_weaker : n_stronger);
-    if (effect.name == "false_triggers") ++n_rates;
-  }
-  CHECK(n_weaker > 0);
-  CHECK(n_stronger > 0);
-  CHECK(n_weaker + n_stronger == settings.n_beyond);
-  CHECK(n_rates == settings.n_beyond);
-}
-
 TEST_CASE("datasets that were injected are kept beside those of other numbers", "[reconcile][selftest]") {
   const TemporaryFolder folder;
   SelftestSettings settings;

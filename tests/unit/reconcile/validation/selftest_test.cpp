@@ -25,7 +25,6 @@ SelftestSettings small() {
   settings.analysis.trees = 100;
   settings.n_nulls = 200;
   settings.n_injected = 10;
-  settings.n_out_of_catalogue = 20;
   settings.leave_out = LeaveOut::effects;
   return settings;
 }
@@ -71,21 +70,6 @@ ReferenceStudy changed(const std::function<void(ReferenceTable&)>& change) {
 }
 
 }  // namespace
-
-TEST_CASE("of a study of one trial nothing is held out and named effects are applied all the same",
-          "[reconcile][selftest][seconds]") {
-  SelftestSettings settings = small();
-  settings.analysis.table = {250, 250, 250, {"false_triggers", "dead_sensor"}};
-  settings.n_nulls = 5;
-  settings.n_injected = 4;
-  settings.n_out_of_catalogue = 0;
-  settings.leave_out = LeaveOut::none;
-  settings.n_verified = 2;
-  const SelftestResult result =
-      selftest(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 30.0), settings);
-  CHECK(std::ranges::none_of(result.cases, [](const InjectedCase& c) { return c.verification.has_value(); }));
-  CHECK(std::ranges::any_of(result.cases, [](const InjectedCase& c) { return c.applied.has_value(); }));
-}
 
 // One case: its sections share the reference study and the injected datasets.
 TEST_CASE("a small self-test keeps its promises and what must break it does", "[reconcile][selftest][minutes]") {
