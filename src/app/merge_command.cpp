@@ -116,7 +116,7 @@ CLI::Option* offer_merge(Command& command) {
   return status;
 }
 
-constexpr const char* examples = R"(
+constexpr const char* merge_examples = R"(
   pirsim merge out --status                                        what is there; what is left, as Slurm's --array
   pirsim merge out --status -q                                     only what is left
   pirsim merge out -o rows.csv.zst
@@ -127,8 +127,8 @@ constexpr const char* examples = R"(
 
 void add_merge_command(CLI::App& app) {
   static_cast<void>(
-      offer_merge(add_command(app, "merge", "join shards into one file, identical to a single process's", examples)));
-  offer_merge(add_old_command(app, "status", "the same as merge --status", examples))->add_result("true");
+      offer_merge(add_command(app, "merge", "join shards into one file, identical to a single process's", merge_examples)));
+  offer_merge(add_old_command(app, "status", "the same as merge --status", merge_examples))->add_result("true");
 }
 
 }  // namespace pirsim::app
