@@ -63,7 +63,7 @@ io::MapChart map_of(const WalkTest& test, const std::string& title, const std::s
 void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
               Tries PointResult::*motion, const WalkRequirement& requirement, const std::string& time) {
   io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
-  io::MapChart pass = map_of(test, WalkWords(test).pass_title(), "verdict");
+  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
   pass.colours = io::MapChart::Colours::pass_or_fail;
   probability.note = time + "; no colour: nothing could be tried there";
   pass.note = "required: " + fixed(100.0 * requirement.probability, 0) + " %";
@@ -123,11 +123,10 @@ io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) 
   io::Report report;
   report.title = words.title();
   report.paragraphs = {words.method(), signs_of_maps(test.scene())};
-  const std::vector<std::string> by_area = passes_by_area(test, result), sources = words.sources();
+  const std::vector<std::string> by_area = passes_by_area(test, result);
   if (!by_area.empty())
     report.paragraphs.push_back("By area (its sensors in brackets): " + joined(by_area, "; ") + ".");
-  report.paragraphs.insert(report.paragraphs.end(), sources.begin(), sources.end());
-  io::ReportSection major{words.major_heading(), {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
+  io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
   major.paragraphs = {capitalised(words.of_major(count_passes(result, &PointResult::major, spec.major))) + "."};
   minor.paragraphs = {capitalised(words.of_minor(count_passes(result, &PointResult::minor, spec.minor))) + "; " +
                       words.of_deafness(result) + "."};
