@@ -1,40 +1,77 @@
 #include "control/outputs.hpp"
 
 #include <cmath>
+#include <span>
 #include <sstream>
+#include <string_view>
 
 #include "pirsim/csv.hpp"
 
 namespace pirsim::control {
 namespace {
 
-/// No text for what isn't known.
-std::string number(double value) {
-  if (std::isnan(value)) return {};
-  return io::csv_number(std::round(value * 1e6) / 1e6);
+constexpr int decimals = 6;
+
+struct CostLine {
+  const LightCosts& light;
+  const DelayCosts& at;
+};
+
+/// Empty where it isn't known.
+Cell number(double value) { return std::isnan(value) ? Cell() : Cell(value); }
+Cell end_of(const Figure& figure, double Interval::*end) {
+  return figure.over_days ? number((*figure.over_days).*end) : Cell();
 }
 
-std::string figure(const Figure& figure) {
-  const auto end = [&](double Interval::*which) { return figure.over_days ? number((*figure.over_days).*which) : ""; };
-  return number(figure.value) + ',' + end(&Interval::low) + ',' + end(&Interval::high);
+constexpr ColumnInfo info(std::string_view name, std::string_view meaning, std::string_view unit = {}) {
+  return {name, Holds::number, meaning, unit, When::always, {}, decimals};
 }
+constexpr std::string_view low = "low end of its interval over days", high = "high end of its interval over days";
+
+constexpr Column<CostLine> costs_by_delay[]{
+    {{"light", Holds::text, "its id"}, [](const CostLine& line) -> Cell { return line.light.id; }},
+    {info("delay_min", "from the last motion until it goes off", "min"),
+     [](const CostLine& line) { return number(line.at.delay_min); }},
+    {{"days", Holds::count, "of the rows"}, [](const CostLine& line) -> Cell { return line.light.days; }},
+    {info("hours", "in which all of its sensors are known", "h"),
+     [](const CostLine& line) { return number(line.light.hours); }},
+    {info("occupied_h", "of them, with somebody there", "h"),
+     [](const CostLine& line) { return number(line.light.occupied_h); }},
+    {info("lit_h", "with light", "h"), [](const CostLine& line) { return number(line.at.lit_h); }},
+    {info("lit_empty_h", "with light while nobody was there", "h"),
+     [](const CostLine& line) { return number(line.at.lit_empty_h); }},
+    {info("dark_h", "without light while somebody was there", "h"),
+     [](const CostLine& line) { return number(line.at.dark_h); }},
+    {info("lit_share", "of all hours"), [](const CostLine& line) { return number(line.at.lit_share.value); }},
+    {info("lit_share_low", low), [](const CostLine& line) { return end_of(line.at.lit_share, &Interval::low); }},
+    {info("lit_share_high", high), [](const CostLine& line) { return end_of(line.at.lit_share, &Interval::high); }},
+    {info("switched_on_a_day", "how often"), [](const CostLine& line) { return number(line.at.switched_on_a_day); }},
+    {{"false_offs", Holds::count, "how often it went off while somebody was there"},
+     [](const CostLine& line) { return line.light.people == People::known ? Cell(line.at.false_offs) : Cell(); }},
+    {info("false_offs_an_hour", "of occupied time"),
+     [](const CostLine& line) { return number(line.at.false_offs_an_hour.value); }},
+    {info("false_offs_an_hour_low", low),
+     [](const CostLine& line) { return end_of(line.at.false_offs_an_hour, &Interval::low); }},
+    {info("false_offs_an_hour_high", high),
+     [](const CostLine& line) { return end_of(line.at.false_offs_an_hour, &Interval::high); }},
+    {info("dark_share", "of occupied time"), [](const CostLine& line) { return number(line.at.dark_share.value); }},
+    {info("dark_share_low", low), [](const CostLine& line) { return end_of(line.at.dark_share, &Interval::low); }},
+    {info("dark_share_high", high), [](const CostLine& line) { return end_of(line.at.dark_share, &Interval::high); }},
+    {info("longest_dark_s", "somebody was in the dark without a break", "s"),
+     [](const CostLine& line) { return number(line.at.longest_dark_s); }},
+    {info("mean_wait_s", "from coming into an empty area to light", "s"),
+     [](const CostLine& line) { return number(line.at.mean_wait_s); }},
+    {info("longest_wait_s", "the longest of these", "s"),
+     [](const CostLine& line) { return number(line.at.longest_wait_s); }},
+};
 
 }  // namespace
 
 std::string to_csv(const Costs& costs) {
   std::ostringstream text;
-  text << "light,delay_min,days,hours,occupied_h,lit_h,lit_empty_h,dark_h,lit_share,lit_share_low,lit_share_high,"
-          "switched_on_a_day,false_offs,false_offs_an_hour,false_offs_an_hour_low,false_offs_an_hour_high,dark_share,"
-          "dark_share_low,dark_share_high,longest_dark_s,mean_wait_s,longest_wait_s\n";
+  io::TableWriter<CostLine> csv(text, std::span<const Column<CostLine>>(costs_by_delay));
   for (const LightCosts& light : costs.lights) {
-    for (const DelayCosts& at : light.by_delay) {
-      text << light.id << ',' << number(at.delay_min) << ',' << light.days << ',' << number(light.hours) << ','
-           << number(light.occupied_h) << ',' << number(at.lit_h) << ',' << number(at.lit_empty_h) << ','
-           << number(at.dark_h) << ',' << figure(at.lit_share) << ',' << number(at.switched_on_a_day) << ','
-           << (light.people == People::known ? std::to_string(at.false_offs) : "") << ','
-           << figure(at.false_offs_an_hour) << ',' << figure(at.dark_share) << ',' << number(at.longest_dark_s) << ','
-           << number(at.mean_wait_s) << ',' << number(at.longest_wait_s) << '\n';
-    }
+    for (const DelayCosts& at : light.by_delay) csv.write({light, at});
   }
   return text.str();
 }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <span>
 #include <sstream>
 
 #include "core/text.hpp"
@@ -101,13 +102,6 @@ std::string share(const Rate& rate) {
   return out.str();
 }
 
-/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was applied.
-std::string verification(const InjectedCase& c) {
-  if (!c.verification) return ",,";
-  const Verification& v = *c.verification;
-  return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
-}
-
 std::string bounds_of(const Target& target) {
   if (target.at_least > 0.0 && target.at_most < 1.0) {
     return fixed(target.at_least, 2) + " to " + fixed(target.at_most, 2);
@@ -147,24 +141,69 @@ std::string to_markdown(const SelftestResult& result) {
   return out.str();
 }
 
+namespace {
+
+struct CaseLine {
+  const InjectedCase& one;
+  std::string named, hidden;
+};
+
+/// Empty where nothing was verified.
+template <typename Tell>
+Cell verified(const CaseLine& line, Tell tell) {
+  return line.one.verification ? Cell(tell(*line.one.verification)) : Cell();
+}
+
+constexpr Column<CaseLine> case_lines[]{
+    {{"kind", Holds::text, "what was hidden"}, [](const CaseLine& line) -> Cell { return name(line.one.kind); }},
+    {{"truth", Holds::text, "the effects hidden, or nothing"},
+     [](const CaseLine& line) -> Cell { return line.one.truth; }},
+    {{"strength", Holds::text, "how strong"}, [](const CaseLine& line) -> Cell { return name(line.one.strength); }},
+    {{"verdict", Holds::text, "what the workflow says"},
+     [](const CaseLine& line) -> Cell { return name(line.one.verdict); }},
+    {{"named", Holds::text, "effects that it names, or can't tell apart"},
+     [](const CaseLine& line) -> Cell { return line.named; }},
+    {{"family", Holds::text, "that it tells"},
+     [](const CaseLine& line) -> Cell { return line.one.family ? Cell(name(*line.one.family)) : Cell(); }},
+    {{"likeliest", Holds::text, "effect with the greatest probability"},
+     [](const CaseLine& line) -> Cell { return line.one.likeliest; }},
+    {{"p", Holds::number, "of the global test"}, [](const CaseLine& line) -> Cell { return line.one.p; }},
+    {{"parameters", Holds::count, "fitted, if the right effect was named"},
+     [](const CaseLine& line) -> Cell { return static_cast<std::int64_t>(line.one.n_parameters); }},
+    {{"covered", Holds::count, "of them, whose interval holds the truth"},
+     [](const CaseLine& line) -> Cell { return static_cast<std::int64_t>(line.one.n_covered); }},
+    {{"share_closed", Holds::number, "of the difference, by the effect named"},
+     [](const CaseLine& line) { return verified(line, [](const Verification& v) { return v.share_closed; }); }},
+    {{"shrunk", Holds::bit, "1 if the difference shrank"},
+     [](const CaseLine& line) {
+       return verified(line, [](const Verification& v) { return std::int64_t{v.shrunk ? 1 : 0}; });
+     }},
+    {{"closed", Holds::bit, "1 if nothing is left of it"},
+     [](const CaseLine& line) {
+       return verified(line, [](const Verification& v) { return std::int64_t{v.closed ? 1 : 0}; });
+     }},
+    {{"p_applied", Holds::number, "of the global test of the model with the effect named"},
+     [](const CaseLine& line) -> Cell { return line.one.applied ? Cell(line.one.applied->p) : Cell(); }},
+    {{"hidden", Holds::text, "parameters of what was hidden"},
+     [](const CaseLine& line) -> Cell { return line.hidden; }},
+};
+
+CaseLine line_of(const InjectedCase& one) {
+  CaseLine line{one, joined(one.named, " "), {}};
+  for (const EffectSpec& effect : one.effects) {
+    for (const auto& [parameter, value] : effect.parameters)
+      line.hidden += (line.hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+    for (const auto& [choice, value] : effect.choices) line.hidden += " " + choice + "=" + value;
+  }
+  return line;
+}
+
+}  // namespace
+
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_applied,"
-         "hidden\n";
-  for (const InjectedCase& c : result.cases) {
-    std::string named, hidden;
-    for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
-    for (const EffectSpec& effect : c.effects) {
-      for (const auto& [parameter, value] : effect.parameters) {
-        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
-      }
-      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
-    }
-    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
-        << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
-        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
-        << (c.applied ? io::csv_number(c.applied->p) : "") << ',' << io::csv_field(hidden) << '\n';
-  }
+  io::TableWriter<CaseLine> csv(out, std::span<const Column<CaseLine>>(case_lines));
+  for (const InjectedCase& one : result.cases) csv.write(line_of(one));
   return out.str();
 }
 
