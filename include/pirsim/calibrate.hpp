@@ -105,6 +105,8 @@ class Pool {
 [[nodiscard]] std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, double step_s,
                                                       std::optional<double> hold_s);
 
+/// Rows joined to readings: any motion in them, which what is unknown doesn't hide, and the people at their end.
+[[nodiscard]] counting::Stretch readings_of(const dataset::RoomDayRows& rows, double step_s);
 /// A finished dataset's rooms with as many sensors as the log has. Throws as dataset::read_room_days(), and
 /// Error(input) if no room has so many.
 [[nodiscard]] std::vector<PoolRoom> read_pool(const std::filesystem::path& folder, int n_sensors, double step_s,

@@ -77,8 +77,6 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 /// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
 [[nodiscard]] WalkTestSpec read_walk_test(const std::filesystem::path& file,
                                           std::span<const std::string> overrides = {});
-/// The same of a file that says `standard` and nothing else.
-[[nodiscard]] WalkTestSpec read_walk_test(WalkStandard standard, std::span<const std::string> overrides = {});
 
 // Comparisons of sensor placements as YAML; the format is described in docs/formats/coverage.md.
 

@@ -62,14 +62,6 @@ struct MeetingsSpec {
   bool operator==(const MeetingsSpec&) const = default;
 };
 
-/// Presence as a Markov chain that follows a profile. Ref: [Page2008].
-struct ProfileSpec {
-  std::vector<double> presence;  ///< (24) share of people present in each hour of a working day
-  double mobility = 0.5;         ///< of the chain
-  double step_min = 15.0;
-  bool operator==(const ProfileSpec&) const = default;
-};
-
 /// Where a resident is on working days.
 enum class Occupation {
   works,         ///< away from `leaves` to `comes_home`
@@ -106,7 +98,6 @@ struct ScheduleSpec {
   double from_h = 0.0, to_h = 24.0;      ///< the part of the day that a run simulates
   std::vector<StaffSpec> staff;
   std::vector<MeetingsSpec> meetings;      ///< of each room in which some are held
-  std::optional<ProfileSpec> profile;      ///< instead of the agents' times and moves
   std::optional<HouseholdSpec> household;  ///< instead of staff, meetings and cleaning
   ClockSpec arrival{8.5, 30.0}, departure{17.5, 30.0}, lunch{12.0, 30.0};
   double lunch_min = 60.0, lunch_sd_min = 15.0;

@@ -121,14 +121,8 @@ struct SwingingArmSpec {
   std::vector<ArmSwing> swings{ArmSwing::horizontal, ArmSwing::vertical};  ///< each in every direction
 };
 
-/// A standard whose terms the outputs speak.
-enum class WalkStandard {
-  nema_wd7,  ///< NEMA WD 7, occupancy motion sensors: cells, major and minor motion, coverage area
-};
-
 struct WalkTestSpec {
   std::string name;
-  std::optional<WalkStandard> standard{};  ///< after which the test is made
   SensingSpec sensing;
   double spacing_m = 0.5;
   PersonSpec person;
@@ -147,8 +141,5 @@ struct WalkTestSpec {
   std::uint64_t seed = 1;           ///< of what effects draw; every try draws by itself
   std::vector<EffectSpec> effects;  ///< as in a script
 };
-
-/// The test that is made after a standard: docs/formats/coverage.md says what was read of it, and what is assumed.
-[[nodiscard]] WalkTestSpec walk_test_after(WalkStandard standard);
 
 }  // namespace pirsim

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pirsim/geometry.hpp"
@@ -38,9 +37,6 @@ struct WalkTestResult {
   std::vector<PointResult> points;  ///< (n_rows x n_columns), without tries off the floor
   std::vector<SeatResult> seats;
 };
-
-/// By its name, "nema-wd7". Throws Error(usage), with the nearest name, for one that isn't known.
-[[nodiscard]] WalkStandard walk_standard(std::string_view name);
 
 /// Runs a walk test. threads 0: all cores; changes nothing in the result. Throws Error(input) for a spec that the scene
 /// can't serve.

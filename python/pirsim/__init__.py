@@ -25,7 +25,7 @@ from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleE
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Area, AreaCounts, Clock, Cluster, Comparator, Counts, Detector,
                     Diagnostic, Door, Effect, Element, Enter, Entrance, Floor, Follow, Frame, HeldMeeting, Household,
-                    InputFile, Leave, Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions, Profile,
+                    InputFile, Leave, Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions,
                     Resident, Rise, Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit,
                     Staff, Stand, Stay, Summary, Track, Trial, Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
@@ -37,7 +37,7 @@ __all__ = [
     "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
     "Lie", "LightCosts", "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy",
     "Optics", "Page", "Person", "Picture", "Place", "PlacementLight", "PlacementScore", "Placements", "Places", "Poses",
-    "Positions", "Profile", "Rays", "Reconciliation", "Resident", "Result", "Rise", "Scene", "Schedule",
+    "Positions", "Rays", "Reconciliation", "Resident", "Result", "Rise", "Scene", "Schedule",
     "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stand",
     "Stay", "Summary", "Trace", "Track", "Trial", "Turn", "UsageError", "Wait", "Walk", "WalkTest", "Warmth",
     "Where", "Work", "Zone", "__version__", "check", "compile", "control", "counting", "coverage",

@@ -102,17 +102,14 @@ def coverage(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = N
     return CoverageMap(**arrays)
 
 
-def walk_test(scene: PathOr | Scene, script: PathOr | None = None, *, standard: str | None = None,
-              set: Overrides | None = None, sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
+def walk_test(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = None,
+              sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
               progress: Progress | None = None) -> WalkTest:
     """Tries at every point of the floor how surely walkers and sitters are noticed in time.
 
-    Arguments as of coverage(); script: a walk test's YAML file, or else standard: "nema-wd7".
+    Arguments as of coverage(); script: a walk test's YAML file.
     """
-    if (script is None) == (standard is None):
-        raise TypeError("walk_test() takes a script or a standard")
-    test = "" if script is None else as_input(script, str)
-    arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), test, standard or "", as_overrides(set),
+    arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), as_input(script, str), as_overrides(set),
                                              *folders(sensors), as_threads(threads), progress)
     for diagnostic in arrays.pop("warnings"):
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)

@@ -22,7 +22,7 @@ __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Clock", "Cluster", "Comparator", "Counts",
     "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
     "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person",
-    "Place", "Places", "Point2", "Point3", "Positions", "Profile", "RatedTarget", "Report", "Resident", "Rise", "Scene",
+    "Place", "Places", "Point2", "Point3", "Positions", "RatedTarget", "Report", "Resident", "Rise", "Scene",
     "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensitivity", "Sensor", "SensorModel", "Sit", "Staff",
     "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
@@ -558,17 +558,6 @@ class Meetings:
 
 
 @dataclass(slots=True)
-class Profile:
-    """Presence as a Markov chain that follows a profile."""
-
-    presence: list[float] = field(default_factory=list)
-    """Share of people present in each of the 24 hours of a working day."""
-    mobility: float = 0.5
-    """Of the chain."""
-    step_min: float = 15.0
-
-
-@dataclass(slots=True)
 class Resident:
     """Somebody who lives in a home."""
 
@@ -614,8 +603,6 @@ class Schedule:
     staff: list[Staff] = field(default_factory=list)
     meetings: list[Meetings] = field(default_factory=list)
     """Of each room in which some are held."""
-    profile: Profile | None = None
-    """Instead of the agents' times and moves."""
     household: Household | None = None
     """Instead of staff, meetings and cleaning."""
     arrival: Clock = field(default_factory=lambda: Clock(mean_h=8.5))

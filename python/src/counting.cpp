@@ -140,8 +140,8 @@ std::string counts_csv(const LogRows& readings, const Probabilities& probabiliti
   return text.str();
 }
 
-/// A dataset's days of one part, (room, day, seconds of a row, sensors, motion, people) of each.
-nb::list read_room_days(const std::string& folder, const std::string& part, unsigned threads) {
+/// A dataset's days of one part as readings, (room, seconds of a row, motion, people) of each.
+nb::list read_room_days(const std::string& folder, const std::string& part, double step_s, unsigned threads) {
   using dataset::Part;
   static constexpr std::pair<const char*, Part> parts[]{{"train", Part::train},
                                                         {"validation", Part::validation},
@@ -152,10 +152,11 @@ nb::list read_room_days(const std::string& folder, const std::string& part, unsi
     throw Error(ErrorCode::usage, "part: expected train, validation, test_days or test_rooms, got '" + part + "'");
   std::vector<dataset::RoomDayRows> days;
   attend(nb::none(), [&](Job&) { days = dataset::read_room_days(folder, named->second, threads); });
-  return listed(days, [](dataset::RoomDayRows& day) {
-    const std::size_t n = day.people.size(), n_sensors = day.sensors.size();
-    return nb::make_tuple(day.room, day.day, day.window_s, nb::tuple(to_python(day.sensors)),
-                          to_numpy(std::move(day.motion), {n, n_sensors}), to_numpy(std::move(day.people), {n}));
+  return listed(days, [&](const dataset::RoomDayRows& day) {
+    counting::Stretch readings = calibrate::readings_of(day, step_s);
+    const std::size_t n = readings.people.size(), n_sensors = day.sensors.size();
+    return nb::make_tuple(day.room, day.window_s, to_numpy(std::move(readings.motion), {n, n_sensors}),
+                          to_numpy(std::move(readings.people), {n}));
   });
 }
 
@@ -289,8 +290,8 @@ void add_counting(nb::module_& module) {
              "Probabilities of counts, an array, and remarks.");
   module.def("told_readings", &told_readings, nb::arg("motion"), nb::arg("step_s"), "0 or 1, an array.");
   module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"), "As pirsim count writes them.");
-  module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("threads"),
-             "Days of a dataset, as tuples.");
+  module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("step_s"),
+             nb::arg("threads"), "Days of a dataset, as tuples.");
   module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("traits"), nb::arg("settings"),
              nb::arg("threads"), "Parts of pirsim.counting.Calibration, by name.");
 }

@@ -61,17 +61,10 @@ nb::object column_of(const WalkTestResult& test, Tries PointResult::*motion, int
   return to_numpy(std::move(values), {test.grid.n_rows(), test.grid.n_columns()});
 }
 
-/// The test after a standard if there is one, else the script's.
-WalkTestSpec walk_test_of(const std::string& script, const std::string& standard,
-                          const std::vector<std::string>& overrides) {
-  if (standard.empty()) return io::read_walk_test(script, overrides);
-  return io::read_walk_test(walk_standard(standard), overrides);
-}
-
-nb::dict walk_test(nb::handle scene, const std::string& script, const std::string& standard,
-                   const std::vector<std::string>& overrides, std::vector<std::string> sensors,
-                   std::vector<std::string> data, unsigned threads, nb::handle progress) {
-  const WalkTestSpec spec = walk_test_of(script, standard, overrides);
+nb::dict walk_test(nb::handle scene, const std::string& script, const std::vector<std::string>& overrides,
+                   std::vector<std::string> sensors, std::vector<std::string> data, unsigned threads,
+                   nb::handle progress) {
+  const WalkTestSpec spec = io::read_walk_test(script, overrides);
   const SceneSpec room = scene_of(scene, {std::move(sensors), std::move(data)});
   const WalkTestResult test =
       surveyed(progress, [&](const RowDone& row_done) { return run_walk_test(room, spec, threads, row_done); });
@@ -93,9 +86,8 @@ nb::dict walk_test(nb::handle scene, const std::string& script, const std::strin
 void add_surveys(nb::module_& module) {
   module.def("coverage", &coverage, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
              nb::arg("data"), nb::arg("threads"), nb::arg("progress").none(), "Arrays of pirsim.CoverageMap, by name.");
-  module.def("walk_test", &walk_test, nb::arg("scene"), nb::arg("script"), nb::arg("standard"), nb::arg("overrides"),
-             nb::arg("sensors"), nb::arg("data"), nb::arg("threads"), nb::arg("progress").none(),
-             "Arrays of pirsim.WalkTest, by name.");
+  module.def("walk_test", &walk_test, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
+             nb::arg("data"), nb::arg("threads"), nb::arg("progress").none(), "Arrays of pirsim.WalkTest, by name.");
 }
 
 }  // namespace pirsim::python

@@ -30,10 +30,9 @@ struct ControlOptions {
   std::vector<std::filesystem::path> rows;
   LogInputs log;
   Inputs inputs;  ///< of the scene
-  std::filesystem::path rule, output, report, light, schedule;
+  std::filesystem::path rule, output, report, light;
   std::vector<double> delays_min;
   std::optional<double> window_s, at_most_a_week;
-  int schedule_min = 15;
 };
 
 control::RuleSpec rule_of(const ControlOptions& options, std::vector<Issue>& remarks) {
@@ -96,40 +95,26 @@ class Outputs {
       lit_data_.emplace(lit_file_->stream(), io::compression_of(options.light));
       lit_.emplace(lit_text_, rule);
     }
-    if (!options.schedule.empty()) schedule_.emplace(rule, about.window_s, options.schedule_min, about.people);
   }
 
   void begin_run() noexcept { control_.begin_run(); }
   void add(const Sample& row, std::string_view day) {
     const control::LitRow lit = control_.add(row, day);
     days_.add(row, lit);
-    if (schedule_) schedule_->add(lit);
     if (!lit_) return;
     lit_->add(row, lit);
     constexpr std::streamoff piece = 1 << 16;
     if (lit_text_.tellp() > piece) flush();
   }
 
-  [[nodiscard]] control::Costs costs() const {
-    control::Costs costs = control_.finish();
-    if (!schedule_) return costs;
-    const std::vector<Issue> remarks = schedule_->remarks();
-    costs.remarks.insert(costs.remarks.end(), remarks.begin(), remarks.end());
-    return costs;
-  }
+  [[nodiscard]] control::Costs costs() const { return control_.finish(); }
   [[nodiscard]] const control::LitDays& days() const noexcept { return days_; }
 
-  void finish(const ControlOptions& options) {
-    if (schedule_) {
-      io::AtomicFile file(options.schedule);
-      schedule_->write(file.stream());
-      file.commit();
-    }
-    if (lit_) {
-      flush();
-      lit_data_->finish();
-      lit_file_->commit();
-    }
+  void finish() {
+    if (!lit_) return;
+    flush();
+    lit_data_->finish();
+    lit_file_->commit();
   }
 
  private:
@@ -140,7 +125,6 @@ class Outputs {
 
   control::Control control_;
   control::LitDays days_;
-  std::optional<control::Schedule> schedule_;
   std::ostringstream lit_text_;
   std::optional<io::AtomicFile> lit_file_;
   std::optional<io::DataWriter> lit_data_;
@@ -182,7 +166,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
   if (source.about().people == control::People::unknown) {
     costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
   }
-  outputs.finish(options);  // which may refuse what can't be written
+  outputs.finish();
   tell(costs.remarks, options.inputs.verbosity);
   if (options.inputs.verbosity != Verbosity::quiet) std::cout << control::to_text(costs);
   require_written();
@@ -194,7 +178,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
     report.footer = made_from(files);
     io::write_report(options.report, report);
   }
-  tell_written({{options.output}, {options.light}, {options.schedule}, {options.report}}, options.inputs.verbosity);
+  tell_written({{options.output}, {options.light}, {options.report}}, options.inputs.verbosity);
 }
 
 void check_options(const ControlOptions& options) {
@@ -204,8 +188,6 @@ void check_options(const ControlOptions& options) {
     if (std::find(options.delays_min.begin(), delay, *delay) != delay)
       throw Error(ErrorCode::usage, "--delay: " + shortest_number(*delay) + " is given twice");
   }
-  if (options.schedule_min < 1 || 60 % options.schedule_min != 0)
-    throw Error(ErrorCode::usage, "--schedule-minutes: expected a divisor of 60");
 }
 
 void control_light(const ControlOptions& options) {
@@ -226,7 +208,6 @@ void add_control_command(CLI::App& app) {
   pirsim control week.csv --report light.html                        one light, by any sensor
   pirsim control week.csv --scene office.gltf --report light.html    a light for each area, by its own sensors
   pirsim control week.csv --rule rule.yaml -o costs.csv --light lit.csv
-  pirsim control week.csv --schedule light.csv --schedule-minutes 10  shares of time, for EnergyPlus
   pirsim control --log week.csv --delay 5 --report light.html        of a log: when it would have been lit
 )");
   const auto options = std::make_shared<ControlOptions>();
@@ -260,10 +241,6 @@ void add_control_command(CLI::App& app) {
                "a page with the curves, the lit times and the worst moments, .html", {".html"});
   offer_output(command, "--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst",
                io::table_endings());
-  offer_output(command, "--schedule", options->schedule, "shares of time lit and present, for EnergyPlus, .csv",
-               {".csv"});
-  command.add_option("--schedule-minutes", options->schedule_min, "a divisor of 60 (default: 15)")
-      ->option_text("MINUTES");
   offer_quiet(command, inputs.verbosity);
   command.callback([options] { control_light(*options); });
 }

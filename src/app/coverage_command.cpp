@@ -5,7 +5,6 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/pages/png.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/response.hpp"
 #include "studies/coverage.hpp"
@@ -40,18 +39,6 @@ CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, u
   });
 }
 
-void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder,
-               const StopRequest& stop) {
-  const auto write = [&](const std::string& name, const io::MapChart& chart) {
-    stop.throw_if_made();
-    const io::Pixels picture = io::drawn(chart);
-    io::write_png(folder / (name + ".png"), picture.width, picture.height, picture.rgb);
-  };
-  for (std::size_t i = 0; i < map.sensors.size(); ++i) write(map.sensors[i], studies::map_chart(study, map, i));
-  // No sensor has this name: rows have a column that is called so.
-  if (map.sensors.size() > 1) write("room", studies::map_of_all(study, map));
-}
-
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
@@ -61,29 +48,26 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const CoverageMap map = compute(study, inputs, options.threads, stop);
   const studies::CoverageFigures figures = studies::figures_of(map);
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
-  draw_maps(study, map, options.output, stop);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cout << studies::to_text(map, figures, studies::area_figures_of(map, study.scene()));
   require_written();
-  const std::string maps =
-      "a map of every sensor lies beside it" + std::string(map.sensors.size() > 1 ? ", room.png of all of them" : "");
-  tell_written({{options.output / "coverage.csv", maps}, {options.report}}, inputs.verbosity);
+  tell_written({{options.output / "coverage.csv"}, {options.report}}, inputs.verbosity);
 }
 
 }  // namespace
 
 void add_coverage_command(CLI::App& app) {
   CLI::App& command = add_command(app, "coverage", "map where each sensor sees a moving target", R"(
-  pirsim coverage --scene room.gltf --script studyB.yaml -o maps   a map of every sensor, figures, pictures
-  pirsim coverage --scene room.gltf --script studyB.yaml --set spacing_m=0.1 --report maps.html
+  pirsim coverage --scene room.gltf --script studyB.yaml --report maps.html   figures, a map of every sensor
+  pirsim coverage --scene room.gltf --script studyB.yaml --set spacing_m=0.1 -o fine
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<CoverageOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output_folder(command, output_names, options->output, "folder for maps and figures (default: coverage)",
-                      {"coverage.csv", "*.png"});
+  offer_output_folder(command, output_names, options->output, "folder for coverage.csv (default: coverage)",
+                      {"coverage.csv"});
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { coverage(given, *options); });

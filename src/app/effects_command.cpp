@@ -1,4 +1,7 @@
 #include <iostream>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
@@ -13,18 +16,52 @@ struct EffectsOptions {
   std::string format = "text";
 };
 
-/// A line a parameter.
-void print_csv(std::ostream& out, const effects::Effect& effect) {
-  const effects::EffectInfo& info = effect.info;
-  for (const effects::ParameterInfo& parameter : info.parameters) {
-    const bool is_strength = parameter.role == effects::Role::strength;
-    out << info.name << ',' << name(info.family) << ',' << info.stage << ',' << name(info.reach) << ','
-        << parameter.name << ',' << parameter.unit << ',' << (is_strength ? io::csv_number(parameter.off) : "") << ','
-        << io::csv_number(parameter.typical) << ',' << io::csv_number(parameter.low) << ','
-        << io::csv_number(parameter.high) << ',' << name(parameter.scale) << ',' << io::csv_field(parameter.source)
-        << ',' << io::csv_field(info.fingerprint) << ','
-        << (parameter.only_if.choice.empty() ? "" : parameter.only_if.choice + ": " + parameter.only_if.word) << ','
-        << io::csv_number(parameter.least) << ',' << io::csv_number(parameter.most) << '\n';
+struct ParameterLine {
+  const effects::EffectInfo& info;
+  const effects::ParameterInfo& parameter;
+  std::string only_if;
+};
+
+constexpr Column<ParameterLine> parameters[]{
+    {{"effect", Holds::text, "its name"}, [](const ParameterLine& line) -> Cell { return line.info.name; }},
+    {{"family", Holds::text, "what it is about"},
+     [](const ParameterLine& line) -> Cell { return name(line.info.family); }},
+    {{"stage", Holds::text, "where it acts"}, [](const ParameterLine& line) -> Cell { return line.info.stage; }},
+    {{"reach", Holds::text, "what has to be simulated anew with it"},
+     [](const ParameterLine& line) -> Cell { return name(line.info.reach); }},
+    {{"parameter", Holds::text, "its name"}, [](const ParameterLine& line) -> Cell { return line.parameter.name; }},
+    {{"unit", Holds::text, "empty: a pure number"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.unit; }},
+    {{"off", Holds::number, "with this value of its strength the effect does nothing"},
+     [](const ParameterLine& line) -> Cell {
+       return line.parameter.role == effects::Role::strength ? Cell(line.parameter.off) : Cell();
+     }},
+    {{"typical", Holds::number, "what a script gets that doesn't say"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.typical; }},
+    {{"low", Holds::number, "least that is expected"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.low; }},
+    {{"high", Holds::number, "most that is expected"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.high; }},
+    {{"scale", Holds::text, "on which values between them are alike"},
+     [](const ParameterLine& line) -> Cell { return name(line.parameter.scale); }},
+    {{"source", Holds::text, "of the range"}, [](const ParameterLine& line) -> Cell { return line.parameter.source; }},
+    {{"fingerprint", Holds::text, "what the effect does to the data"},
+     [](const ParameterLine& line) -> Cell { return line.info.fingerprint; }},
+    {{"only_if", Holds::text, "a choice without which the parameter means nothing"},
+     [](const ParameterLine& line) -> Cell { return line.only_if; }},
+    {{"least", Holds::number, "least that is accepted"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.least; }},
+    {{"most", Holds::number, "most that is accepted"},
+     [](const ParameterLine& line) -> Cell { return line.parameter.most; }},
+};
+
+void print_csv(std::ostream& out, const std::vector<const effects::Effect*>& chosen) {
+  io::TableWriter<ParameterLine> csv(out, std::span<const Column<ParameterLine>>(parameters));
+  for (const effects::Effect* effect : chosen) {
+    for (const effects::ParameterInfo& parameter : effect->info.parameters) {
+      const effects::Condition& only = parameter.only_if;
+      csv.write({effect->info, parameter, only.choice.empty() ? "" : only.choice + ": " + only.word});
+    }
   }
 }
 
@@ -32,9 +69,7 @@ void list_effects(const EffectsOptions& options) {
   std::vector<const effects::Effect*> chosen = effects::catalogue();
   if (!options.name.empty()) chosen = {&effects::find(options.name)};
   if (options.format == "csv") {
-    std::cout << "effect,family,stage,reach,parameter,unit,off,typical,low,high,scale,source,fingerprint,only_if,least,"
-                 "most\n";
-    for (const effects::Effect* effect : chosen) print_csv(std::cout, *effect);
+    print_csv(std::cout, chosen);
   } else if (options.format == "md") {
     std::cout << effects::list_markdown();
   } else if (!options.name.empty()) {

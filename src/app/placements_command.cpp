@@ -6,7 +6,6 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/pages/png.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/look.hpp"
 #include "studies/placement_page.hpp"
@@ -17,7 +16,6 @@ namespace {
 struct PlacementsOptions {
   std::filesystem::path scene;   ///< .gltf, .glb
   std::filesystem::path report;  ///< .html
-  std::filesystem::path maps;    ///< folder
   unsigned threads = 0;
 };
 
@@ -36,20 +34,6 @@ PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const
   return run_placements(scene, spec, options);
 }
 
-/// What was written.
-std::vector<std::filesystem::path> draw_maps(const studies::PlacementViews& views,
-                                             const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  const auto write = [&](const char* name, const std::optional<studies::PlacementView>& view) {
-    if (!view) return;
-    const io::Pixels picture = io::drawn(view->map);
-    io::write_png(files.emplace_back(folder / name), picture.width, picture.height, picture.rgb);
-  };
-  write("before.png", views.before);
-  write("after.png", views.after);
-  return files;
-}
-
 void placements(const Inputs& inputs, const PlacementsOptions& options) {
   const PlacementSpec spec =
       io::read_placements(found(io::DataKind::studies, inputs.script), inputs.overrides, data_directories());
@@ -58,23 +42,18 @@ void placements(const Inputs& inputs, const PlacementsOptions& options) {
   tell(scene.warnings, inputs.verbosity);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
-  if (!options.maps.empty()) make_folder(options.maps);
   const StopRequest stop;
   const PlacementReport report = compare(scene, spec, inputs, options.threads, stop);
   tell(report.warnings, inputs.verbosity);
   if (!options.scene.empty()) io::write_scene(options.scene, report.best);
-  std::vector<WrittenFile> written{{options.scene}, {options.report}};
-  if (report_file || !options.maps.empty()) {
+  if (report_file) {
     const studies::PlacementViews views = studies::views_of(scene, spec, report, options.threads);
     stop.throw_if_made();
-    if (report_file) write_page(*report_file, studies::placement_report(scene, spec, report, views), inputs);
-    if (!options.maps.empty()) {
-      for (const std::filesystem::path& map : draw_maps(views, options.maps)) written.push_back({map});
-    }
+    write_page(*report_file, studies::placement_report(scene, spec, report, views), inputs);
   }
   std::cout << report.text;
   require_written();
-  tell_written(written, inputs.verbosity);
+  tell_written({{options.scene}, {options.report}}, inputs.verbosity);
 }
 
 }  // namespace
@@ -93,9 +72,6 @@ void add_placements_command(CLI::App& app) {
   offer_output(command, output_names, options->scene, "the scene with the best set's sensors, .gltf or .glb",
                {".gltf", ".glb"});
   offer_map_report(command, options->report);
-  offer_output_folder(command, "--maps", options->maps,
-                      "folder for before.png and after.png: the scene's own set, the best one",
-                      {"before.png", "after.png"});
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { placements(given, *options); });
 }

@@ -14,25 +14,13 @@ namespace pirsim::app {
 namespace {
 
 struct WalkTestOptions {
-  std::optional<WalkStandard> standard;
   std::filesystem::path output = "walk_test.csv";
   std::filesystem::path report;  ///< .html
   unsigned threads = 0;
 };
 
-/// One of the two says what is tried.
-void require_one_test(const Inputs& inputs, const WalkTestOptions& options) {
-  if (inputs.script.empty() && !options.standard)
-    throw Error(ErrorCode::usage, "--script FILE (or --standard nema-wd7) is missing; see pirsim walktest --help");
-  if (!inputs.script.empty() && options.standard)
-    throw Error(ErrorCode::usage, "--standard and --script exclude each other: a script may say `standard` itself");
-}
-
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
-  require_one_test(inputs, options);
-  WalkTestSpec spec = options.standard
-                          ? io::read_walk_test(*options.standard, inputs.overrides)
-                          : io::read_walk_test(found(io::DataKind::studies, inputs.script), inputs.overrides);
+  WalkTestSpec spec = io::read_walk_test(found(io::DataKind::studies, inputs.script), inputs.overrides);
   SceneSpec scene = read_scene(inputs);
   tell(scene.warnings, inputs.verbosity);
   tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);
@@ -65,23 +53,16 @@ void add_walktest_command(CLI::App& app) {
   CLI::App& command = add_command(app, "walktest", "how surely walkers and sitters are noticed in time", R"(
   pirsim walktest --scene room.gltf --script walk_test.yaml -o points.csv
   pirsim walktest --scene room.gltf --script walk_test.yaml --set spacing_m=1 --report maps.html
-  pirsim walktest --scene room.gltf --standard nema-wd7 --report maps.html
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<WalkTestOptions>();
   offer_study(command, *inputs);
-  command
-      .add_option_function<std::string>(
-          "--standard", [options](const std::string& word) { options->standard = walk_standard(word); },
-          "the test after a standard in place of a script's: nema-wd7")
-      ->option_text("NAME");
   offer_seed(command, *inputs);
   offer_output(command, output_names, options->output,
                "points with tries and verdicts, as CSV (default: walk_test.csv)", {".csv"});
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
-  on_call(
-      command, inputs, [options](const Inputs& given) { walk_test(given, *options); }, Needs::scene);
+  on_call(command, inputs, [options](const Inputs& given) { walk_test(given, *options); });
 }
 
 }  // namespace pirsim::app

@@ -1,6 +1,7 @@
 // What a calibration leaves behind for programs: weights, the counter, the numbers of the page, the recipe.
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 
 #include "calibrate/page.hpp"
@@ -17,13 +18,19 @@ using Json = nlohmann::ordered_json;
 
 Json pair(const Interval& interval) { return {interval.low, interval.high}; }
 
+constexpr Column<WeighedRoom> weights[]{
+    {{"room", Holds::whole, "its number in the pool"}, [](const WeighedRoom& room) -> Cell { return room.number; }},
+    {{"weight", Holds::number, "they add up to 1"}, [](const WeighedRoom& room) -> Cell { return room.weight; }},
+    {{"log_likelihood", Holds::number, "of the log in this room"},
+     [](const WeighedRoom& room) -> Cell { return room.log_likelihood; }},
+    {{"error", Holds::number, "in people, of counts in this room by the others; empty: nobody was there", "1"},
+     [](const WeighedRoom& room) -> Cell { return room.error ? Cell(*room.error) : Cell(); }},
+};
+
 std::string weights_table(const Calibration& calibration) {
   std::ostringstream text;
-  text << "room,weight,log_likelihood,error\n";
-  for (const WeighedRoom& room : calibration.rooms) {
-    text << room.number << ',' << io::csv_number(room.weight) << ',' << io::csv_number(room.log_likelihood) << ','
-         << (room.error ? io::csv_number(*room.error) : std::string()) << '\n';
-  }
+  io::TableWriter<WeighedRoom> csv(text, std::span<const Column<WeighedRoom>>(weights));
+  for (const WeighedRoom& room : calibration.rooms) csv.write(room);
   return text.str();
 }
 

@@ -87,21 +87,6 @@ Parameters parameters_of(const fs::path& folder) {
   return parameters;
 }
 
-/// Rows joined to readings: any motion in them, and the people at their end.
-counting::Stretch stretch_of(const dataset::RoomDayRows& rows, double step_s) {
-  const auto per = static_cast<std::size_t>(std::max(1L, std::lround(step_s / rows.window_s)));
-  const std::size_t n_sensors = rows.sensors.size(), n = rows.people.size() / per;
-  counting::Stretch stretch{static_cast<int>(n_sensors), std::vector<std::uint8_t>(n * n_sensors, 0), {}};
-  for (std::size_t i = 0; i < n * per; ++i) {
-    for (std::size_t k = 0; k < n_sensors; ++k) {
-      std::uint8_t& bit = stretch.motion[i / per * n_sensors + k];
-      if (bit != 1) bit = std::max(bit, rows.motion[i * n_sensors + k]);  // what is unknown hides no motion
-    }
-  }
-  for (std::size_t i = 0; i < n; ++i) stretch.people.push_back(rows.people[i * per + per - 1]);
-  return stretch;
-}
-
 }  // namespace
 
 std::optional<double> common_hold(const LogFacts& facts) {
@@ -137,6 +122,20 @@ std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, doubl
   return overrides;
 }
 
+counting::Stretch readings_of(const dataset::RoomDayRows& rows, double step_s) {
+  const auto per = static_cast<std::size_t>(std::max(1L, std::lround(step_s / rows.window_s)));
+  const std::size_t n_sensors = rows.sensors.size(), n = rows.people.size() / per;
+  counting::Stretch stretch{static_cast<int>(n_sensors), std::vector<std::uint8_t>(n * n_sensors, 0), {}};
+  for (std::size_t i = 0; i < n * per; ++i) {
+    for (std::size_t k = 0; k < n_sensors; ++k) {
+      std::uint8_t& bit = stretch.motion[i / per * n_sensors + k];
+      if (bit != 1) bit = std::max(bit, rows.motion[i * n_sensors + k]);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) stretch.people.push_back(rows.people[i * per + per - 1]);
+  return stretch;
+}
+
 std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double step_s, unsigned threads) {
   using dataset::Part;
   std::vector<dataset::RoomDayRows> days;
@@ -151,7 +150,7 @@ std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double st
       const auto own = parameters.find(day.room);
       pool.push_back({{day.room, {}}, own == parameters.end() ? std::map<std::string, double>{} : own->second});
     }
-    pool.back().labelled.days.push_back(stretch_of(day, step_s));
+    pool.back().labelled.days.push_back(readings_of(day, step_s));
   }
   if (pool.empty() && !days.empty()) {
     throw Error(ErrorCode::input, "the log has " + counted(static_cast<std::size_t>(n_sensors), "sensor") +

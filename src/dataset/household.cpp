@@ -30,8 +30,10 @@ HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics&
     faults.error(
         map.where("works_at_home"),
         "household: works_at_home: is more than 1 together with `works`, which is " + shortest_number(ranges.works));
-  ranges.age_years = read_range(map, "age_years", ranges.age_years, {.min = 16.0, .max = 110.0});
-  ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week, {.min = 0.0, .max = 7.0});
+  ranges.age_years =
+      read_range(map, "age_years", ranges.age_years, range_of(field_of<&ResidentSpec::age_years>(), ResidentSpec{}));
+  ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week,
+                                    range_of(field_of<&HouseholdSpec::visits_a_week>(), ranges.usual));
   ranges.shift_min = read_range(map, "shift_min", ranges.shift_min, {.min = -120.0, .max = 120.0});
   for (const HouseholdClock& named : household_clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
   HouseholdSpec somebody = ranges.usual;

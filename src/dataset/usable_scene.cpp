@@ -5,21 +5,12 @@
 
 #include "pirsim/model.hpp"
 #include "pirsim/room.hpp"
+#include "schema/schedule_people.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
 
 namespace pirsim::dataset {
 namespace {
-
-/// As large as the people of a schedule get: where this body gets to, all of them do.
-PersonSpec largest_person() {
-  constexpr double stature_m = 1.92, bmi = 32.0;
-  PersonSpec person;
-  person.id = "visitor";
-  person.stature_m = stature_m;
-  person.mass_kg = bmi * stature_m * stature_m;
-  return person;
-}
 
 /// What takes somebody to each seat, place and point.
 std::vector<ScriptedAction> stops_of(const SceneSpec& scene) {
@@ -53,7 +44,7 @@ std::vector<ScriptedAction> ways_through(const SceneSpec& scene) {
 ScriptSpec tour_of(const SceneSpec& scene, const Demands& demands) {
   ScriptSpec script;
   script.name = "tour of " + scene.name;
-  std::vector<PersonSpec> visitors{largest_person()};
+  std::vector<PersonSpec> visitors{largest_body("visitor")};
   if (!demands.shared_beds.empty()) visitors.emplace_back().id = "other";
   for (PersonSpec& visitor : visitors) visitor.actions = ways_through(scene);
   script.trials.push_back({"1", std::move(visitors)});

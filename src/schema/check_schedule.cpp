@@ -45,11 +45,6 @@ void check_together(const MeetingsSpec& meetings, const TellFault& tell) {
   if (meetings.from_h >= meetings.to_h) tell("to_h", "`to` is not after `from`");
 }
 
-void check_together(const ProfileSpec& profile, const TellFault& tell) {
-  constexpr std::size_t hours_a_day = 24;
-  if (profile.presence.size() != hours_a_day) tell("presence", "expected 24 shares, one for each hour of the day");
-}
-
 void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   try {
     static_cast<void>(day_number(schedule.first_day, {}));
@@ -58,12 +53,11 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   }
   if (schedule.from_h >= schedule.to_h) tell("to_h", "`to` is not after `from`");
   if (schedule.departure.mean_h <= schedule.arrival.mean_h) tell("departure", "departure must be after arrival");
-  const bool is_office =
-      !schedule.staff.empty() || !schedule.meetings.empty() || schedule.cleaning_h || schedule.profile;
+  const bool is_office = !schedule.staff.empty() || !schedule.meetings.empty() || schedule.cleaning_h;
   if (!is_office && !schedule.household)
     tell("staff", "nobody comes: give `staff`, `meetings`, `cleaning` or `household`");
   if (is_office && schedule.household)
-    tell("household", "`household` goes without `staff`, `meetings`, `profile` and `cleaning`, which are of an office");
+    tell("household", "`household` goes without `staff`, `meetings` and `cleaning`, which are of an office");
   if (!schedule.household && schedule.to_h > 24.0) tell("to_h", "`to` is beyond 24:00");
   if (schedule.household && (schedule.from_h != home_from_h || schedule.to_h != home_to_h))
     tell("to_h", "a household's day goes from 04:00 to 04:00: leave out `from` and `to`");
@@ -100,10 +94,6 @@ void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& fault
   if (!faults.few(path.field("meetings"), schedule.meetings.size(), limits::list_entries)) return;
   for (std::size_t i = 0; i < schedule.meetings.size(); ++i)
     check(schedule.meetings[i], path.item("meetings", i), faults);
-  if (schedule.profile) {
-    faults.fields(*schedule.profile, path.field("profile"));
-    faults.together(*schedule.profile, path.field("profile"));
-  }
   if (schedule.household) check(*schedule.household, path.field("household"), faults);
   faults.fields(schedule.arrival, path.field("arrival"));
   faults.fields(schedule.departure, path.field("departure"));

@@ -87,7 +87,6 @@ void check_together(const HeldMeetingSpec& held, const TellFault& tell);
 /// Calls `tell(i, j)` for meetings i and j < i that overlap, since they are in one room.
 void check_together(std::span<const HeldMeetingSpec> held, const std::function<void(std::size_t, std::size_t)>& tell);
 void check_together(const MeetingsSpec& meetings, const TellFault& tell);
-void check_together(const ProfileSpec& profile, const TellFault& tell);
 void check_together(const ScheduleSpec& schedule, const TellFault& tell);
 void check_together(const HouseholdSpec& household, const TellFault& tell);
 /// begin: the script's; its own faults are told elsewhere.

@@ -65,7 +65,7 @@ concept Described = requires {
   Fields<T>::all;
 };
 
-/// Doesn't compile for a spec that has another number of fields than n.
+/// Doesn't compile for a spec that has another number of fields than n, which is at most 32.
 template <std::size_t n, typename Spec>
 constexpr bool has_fields() {
   [[maybe_unused]] const auto take = [](Spec& spec) {
@@ -86,7 +86,36 @@ constexpr bool has_fields() {
     else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
     else if constexpr (n == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = spec; (void)a; }
     else if constexpr (n == 16) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = spec; (void)a; }
-    else static_assert(n == 0 && std::is_empty_v<Spec>);
+    else if constexpr (n == 17) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r] = spec; (void)a; }
+    else if constexpr (n == 18) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s] = spec; (void)a; }
+    else if constexpr (n == 19) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t] = spec; (void)a; }
+    else if constexpr (n == 20) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u] = spec; (void)a; }
+    else if constexpr (n == 21) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u,
+      v] = spec; (void)a; }
+    else if constexpr (n == 22) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v,
+      w] = spec; (void)a; }
+    else if constexpr (n == 23) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w,
+      x] = spec; (void)a; }
+    else if constexpr (n == 24) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x,
+      y] = spec; (void)a; }
+    else if constexpr (n == 25) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y,
+      z] = spec; (void)a; }
+    else if constexpr (n == 26) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2] = spec; (void)a; }
+    else if constexpr (n == 27) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2] = spec; (void)a; }
+    else if constexpr (n == 28) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2, c2] = spec; (void)a; }
+    else if constexpr (n == 29) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2, c2, d2] = spec; (void)a; }
+    else if constexpr (n == 30) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2, c2, d2, e2] = spec; (void)a; }
+    else if constexpr (n == 31) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2, c2, d2, e2, f2] = spec; (void)a; }
+    else if constexpr (n == 32) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r, s, t, u, v, w, x, y, z,
+      a2, b2, c2, d2, e2, f2, g2] = spec; (void)a; }
+    else if constexpr (n == 0) static_assert(std::is_empty_v<Spec>, "the description has no fields, the spec has some");
+    else static_assert(n <= 32, "has_fields() counts up to 32 fields: write a line more");
     // clang-format on
   };
   return true;

@@ -27,8 +27,8 @@ using SpecsOfPython =
                SensitivitySpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait, action::Appear, action::Enter,
                action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn, action::Follow,
                action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
-               HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec,
-               CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec,
-               SummarySpec, EffectSpec, ScriptSpec>;
+               HeldMeetingSpec, MeetingsSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec,
+               StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec,
+               EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

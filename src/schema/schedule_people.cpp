@@ -21,7 +21,7 @@ namespace {
 // Adults; statures of [DrillisContini1966]'s time were smaller. assumed: mean of men and women in Europe, with their
 // common spread (tried 1.65-1.78, 0.07-0.11).
 constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1.52, most_stature_m = 1.92;
-constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
+constexpr double mean_bmi = 24.5, bmi_sd = 3.0, least_bmi = 18.0, most_bmi = 32.0;  // kg/m2, assumed (mean 22-27)
 // Offices of all seasons: median of [Schiavon2013], log-normal spread of [Foldvary2018].
 constexpr double median_clo = 0.59, clo_log_sd = 0.37, least_clo = 0.3, most_clo = 1.5;
 constexpr double long_sleeves_clo = 0.59;  // trousers and shirt: 0.57 with short sleeves, 0.61 with long [ASHRAE55]
@@ -202,10 +202,19 @@ PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t se
   person.id = id;
   person.style = style;
   person.stature_m = std::clamp(mean_stature_m + stature_sd_m * stream.normal(), least_stature_m, most_stature_m);
-  person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
+  person.mass_kg =
+      std::clamp(mean_bmi + bmi_sd * stream.normal(), least_bmi, most_bmi) * person.stature_m * person.stature_m;
   person.walking_speed_m_s = pace_m_s;
   person.seat_scatter = {0.03, 4.0};
   person.warmth = drawn_warmth(seed, entity);
+  return person;
+}
+
+PersonSpec largest_body(const std::string& id) {
+  PersonSpec person;
+  person.id = id;
+  person.stature_m = most_stature_m;
+  person.mass_kg = most_bmi * most_stature_m * most_stature_m;
   return person;
 }
 

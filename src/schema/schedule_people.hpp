@@ -25,6 +25,8 @@ struct ScheduledPerson {
 
 /// Somebody of no particular size and clothing, drawn from the study's seed; entity: which of the people so drawn.
 [[nodiscard]] PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity);
+/// As large as drawn bodies get: where this one gets to, all of them do.
+[[nodiscard]] PersonSpec largest_body(const std::string& id);
 
 /// Staff in their order, then guests of meetings, then who cleans. Bodies are drawn from the study's seed and are the
 /// same on all days. Throws Error(input) for more staff than seats, and for seats and entrances that the scene lacks.

@@ -57,10 +57,6 @@ struct Words<ArmSwing> {
   static constexpr WordList<ArmSwing, 2> all{{{"horizontal", ArmSwing::horizontal}, {"vertical", ArmSwing::vertical}}};
 };
 template <>
-struct Words<WalkStandard> {
-  static constexpr WordList<WalkStandard, 1> all{{{"nema-wd7", WalkStandard::nema_wd7}}};
-};
-template <>
 struct Words<PulseSigns> {
   static constexpr WordList<PulseSigns, 2> all{{{"any", PulseSigns::any}, {"alternating", PulseSigns::alternating}}};
 };

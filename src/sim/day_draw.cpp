@@ -78,26 +78,6 @@ std::vector<Stay> draw_agent(const ScheduleSpec& schedule, Role role, Stream& st
   return stays;
 }
 
-std::vector<Stay> draw_presence(const ProfileSpec& profile, Stream& stream) {
-  const auto share = [&](double at_s) {
-    return profile.presence[std::min<std::size_t>(static_cast<std::size_t>(at_s / hour_s), 23)];
-  };
-  const double step_s = profile.step_min * minute_s;
-  std::vector<Stay> stays;
-  bool present = stream.uniform() < share(0.0);
-  double since_s = 0.0;
-  for (double now = 0.0; now + step_s < day_s; now += step_s) {
-    const ProfileStep chances = profile_step(share(now), share(now + step_s), profile.mobility);
-    const bool then = stream.uniform() < (present ? chances.stays : chances.comes);
-    const double at_s = now + step_s * stream.uniform();
-    if (then && !present) since_s = at_s;
-    if (!then && present) stays.push_back({Place::desk, since_s, at_s});
-    present = then;
-  }
-  if (present) stays.push_back({Place::desk, since_s, day_s});
-  return stays;
-}
-
 const Stay* stay_at(const std::vector<Stay>& stays, double at_s) {
   const auto stay = std::ranges::find_if(stays, [&](const Stay& s) { return s.from_s <= at_s && at_s < s.to_s; });
   return stay == stays.end() ? nullptr : &*stay;
@@ -173,19 +153,11 @@ DayDraw draw_times(const DaySource& source) {
     if (person->part == SchedulePart::cleaner)
       draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
     if (person->part != SchedulePart::staff) continue;
-    draw.stays[i] = source.schedule.profile ? draw_presence(*source.schedule.profile, stream)
-                                            : draw_agent(source.schedule, person->role, stream);
+    draw.stays[i] = draw_agent(source.schedule, person->role, stream);
   }
   draw_meetings(source, draw);
   find_hosts(source, draw);
   return draw;
-}
-
-ProfileStep profile_step(double now, double next, double mobility) {
-  if (now >= 1.0) return {1.0, next};
-  const double least = std::max(0.0, (next - now) / (1.0 - now)), most = std::min(1.0, next / (1.0 - now));
-  const double comes = std::clamp((mobility - 1.0) / (mobility + 1.0) * now + next, least, most);
-  return {comes, now > 0.0 ? std::clamp((next - (1.0 - now) * comes) / now, 0.0, 1.0) : 1.0};
 }
 
 std::vector<double> markov_rates(std::span<const double> shares, std::span<const double> stays) {

@@ -87,12 +87,4 @@ inline constexpr double shortest_stay_s = 120.0;
 /// (i x n + j) is the rate from i to j. Solves x_i (sum x - x_i) = share_i / stay_i. Ref: [ChenHongLuo2018].
 [[nodiscard]] std::vector<double> markov_rates(std::span<const double> shares, std::span<const double> stays);
 
-/// Chances of Page's chain to be present a step later, for who is absent and who is present, where the share of people
-/// present goes from `now` to `next`. Whatever the mobility, the shares follow the profile exactly: where the published
-/// formula leaves [0, 1], the nearest chain that follows it is taken. Ref: [Page2008].
-struct ProfileStep {
-  double comes = 0.0, stays = 0.0;
-};
-[[nodiscard]] ProfileStep profile_step(double now, double next, double mobility);
-
 }  // namespace pirsim::sim

@@ -1,43 +1,53 @@
 #include "studies/ordinary_days.hpp"
 
 #include <sstream>
+#include <vector>
+
+#include "core/text.hpp"
+#include "io/write/spec_writer.hpp"
+#include "pirsim/schedule.hpp"
+#include "schema/household_clocks.hpp"
 
 namespace pirsim::studies {
 namespace {
 
-constexpr const char* staff_lines = R"(  staff:
-    - {role: staff, count: @staff@}    # or manager, administrator; seats: [S1, ...] for desks of their own
-  arrival: {mean: 08:30, sd_min: 30}
-  departure: {mean: 17:30, sd_min: 30}
-  lunch: {mean: 12:00, sd_min: 30}
-  lunch_min: 60
-  lunch_sd_min: 15
-)";
+/// "{mean: 08:30, sd_min: 30}"
+std::string written(const ClockSpec& clock) {
+  return "{mean: " + io::time_of_day(clock.mean_h) + ", sd_min: " + shortest_number(clock.sd_min) + "}";
+}
 
-constexpr const char* meeting_lines = R"(  meetings:
-    fewest_a_day: 2
-    most_a_day: 6
-    fewest_people: 2                   # most_people: 8, or as many as there are seats
-    durations_min: [30, 60, 90, 120]
-    probabilities: [0.13, 0.70, 0.12, 0.05]
-    from: 09:00
-    to: 18:00
-    lateness_min: 2
-)";
+std::string staff_lines(int staff) {
+  const ScheduleSpec usual;
+  return "  staff:\n    - {role: staff, count: " + std::to_string(staff) +
+         "}    # or manager, administrator; seats: [S1, ...] for desks of their own\n  arrival: " +
+         written(usual.arrival) + "\n  departure: " + written(usual.departure) + "\n  lunch: " + written(usual.lunch) +
+         "\n  lunch_min: " + shortest_number(usual.lunch_min) +
+         "\n  lunch_sd_min: " + shortest_number(usual.lunch_sd_min) + '\n';
+}
 
-constexpr const char* home_lines = R"(    visits_a_week: 1                   # evenings on which somebody comes
-    wakes: {mean: 07:00, sd_min: 30}
-    wakes_on_free_days: {mean: 08:30, sd_min: 45}
-    goes_to_bed: {mean: 23:00, sd_min: 30}
-    leaves: {mean: 08:15, sd_min: 20}  # who works; who works at home begins
-    comes_home: {mean: 17:15, sd_min: 40}
-    lunch: {mean: 13:00, sd_min: 20}
-    dinner: {mean: 19:30, sd_min: 30}
-)";
+std::string meeting_lines() {
+  const MeetingsSpec usual;
+  const auto listed = [](const std::vector<double>& values, int decimals) {
+    std::vector<std::string> words;
+    for (const double value : values) words.push_back(fixed(value, decimals));
+    return "[" + joined(words, ", ") + "]\n";
+  };
+  return "  meetings:\n    fewest_a_day: " + std::to_string(usual.fewest_a_day) +
+         "\n    most_a_day: " + std::to_string(usual.most_a_day) +
+         "\n    fewest_people: " + std::to_string(usual.fewest_people) +
+         "                   # most_people: 8, or as many as there are seats\n    durations_min: " +
+         listed(usual.durations_min, 0) + "    probabilities: " + listed(usual.probabilities, 2) +
+         "    from: " + io::time_of_day(usual.from_h) + "\n    to: " + io::time_of_day(usual.to_h) +
+         "\n    lateness_min: " + shortest_number(usual.lateness_min) + '\n';
+}
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
+std::string home_lines() {
+  const HouseholdSpec usual;
+  std::string text = "    visits_a_week: " + shortest_number(usual.visits_a_week) +
+                     "                   # evenings on which somebody comes\n";
+  for (const HouseholdClock& named : household_clocks) {
+    text += "    " + std::string(named.key) + ": " + written(usual.*named.clock);
+    text += named.clock == &HouseholdSpec::leaves ? "  # who works; who works at home begins\n" : "\n";
   }
   return text;
 }
@@ -49,8 +59,8 @@ std::string office_lines(const OrdinaryDays& days) {
   text << "  from: " << given_or(days.from, "00:00")
        << "                          # the part of each day that is simulated\n"
        << "  to: " << given_or(days.to, "24:00") << '\n';
-  if (days.staff > 0) text << replaced(staff_lines, "@staff@", std::to_string(days.staff));
-  if (days.meetings == OrdinaryDays::Meetings::held) text << meeting_lines;
+  if (days.staff > 0) text << staff_lines(days.staff);
+  if (days.meetings == OrdinaryDays::Meetings::held) text << meeting_lines();
   if (days.cleaning != "none") text << "  cleaning: " << given_or(days.cleaning, "19:00") << '\n';
   return text.str();
 }
@@ -64,7 +74,7 @@ std::string household_lines(const OrdinaryDays& days) {
     text << "      - {id: resident_" << i << ", occupation: " << (works ? "works" : "at_home")
          << ", age_years: " << (works ? 40 : 68) << "}" << (i == 1 ? "    # or at_home, works_at_home" : "") << '\n';
   }
-  text << home_lines;
+  text << home_lines();
   return text.str();
 }
 

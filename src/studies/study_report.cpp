@@ -91,8 +91,7 @@ io::MapChart map_with(const CoverageStudy& study, const CoverageMap& map, Count 
   return chart;
 }
 
-}  // namespace
-
+/// One sensor's map with the walls, the sensor and, dashed, what was taken out of the room.
 io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor) {
   io::MapChart chart =
       map_with(study, map, [&](std::size_t column, std::size_t row) { return map.count(column, row, sensor); });
@@ -100,6 +99,8 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
   chart.markers = {marker_of(study.scene().sensors[sensor])};
   return chart;
 }
+
+}  // namespace
 
 io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
   io::MapChart chart = map_with(study, map, [&](std::size_t column, std::size_t row) {

@@ -14,9 +14,7 @@
 
 namespace pirsim::studies {
 
-/// One sensor's map with the walls, the sensor and, dashed, what was taken out of the room.
-[[nodiscard]] io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor);
-/// In each square the count of the sensor that reported motion most often there.
+/// A map of all sensors: in each square the count of the sensor that reported motion most often there.
 [[nodiscard]] io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map);
 
 [[nodiscard]] io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map,

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <span>
+#include <sstream>
 
 #include "core/text.hpp"
 #include "pirsim/csv.hpp"
@@ -155,27 +157,58 @@ std::string markdown(const std::vector<Row>& table, std::size_t left) {
 
 }  // namespace
 
+namespace {
+
+/// With the texts of what has a fixed number of decimals.
+struct CellLine {
+  const CellSummary& cell;
+  std::string mean, crps, published_min, published_max, published_mean;
+};
+
+/// Empty where nothing ran.
+Cell of_runs(const CellSummary& cell, int CellSummary::*value) {
+  return cell.runs > 0 ? Cell(std::int64_t{cell.*value}) : Cell();
+}
+
+constexpr Column<CellLine> cell_lines[]{
+    {{"trial", Holds::text, "as the script names it"}, [](const CellLine& line) -> Cell { return line.cell.trial; }},
+    {{"sensor", Holds::text, "as the scene names it"}, [](const CellLine& line) -> Cell { return line.cell.sensor; }},
+    {{"runs", Holds::count, "that were simulated"}, [](const CellLine& line) -> Cell { return line.cell.runs; }},
+    {{"min", Holds::count, "least number of rows with motion in a run"},
+     [](const CellLine& line) { return of_runs(line.cell, &CellSummary::min); }},
+    {{"max", Holds::count, "greatest number of them"},
+     [](const CellLine& line) { return of_runs(line.cell, &CellSummary::max); }},
+    {{"mean", Holds::number, "mean of them"}, [](const CellLine& line) -> Cell { return line.mean; }},
+    {{"real", Holds::count, "the measured number"},
+     [](const CellLine& line) -> Cell {
+       return line.cell.measured ? Cell(std::int64_t{line.cell.measured->real}) : Cell();
+     }},
+    {{"inside", Holds::bit, "1 if it lies between `min` and `max`"},
+     [](const CellLine& line) -> Cell {
+       return line.cell.inside ? Cell(std::int64_t{*line.cell.inside ? 1 : 0}) : Cell();
+     }},
+    {{"crps", Holds::number, "continuous ranked probability score"},
+     [](const CellLine& line) -> Cell { return line.crps; }},
+    {{"published_min", Holds::number, "least that others simulated"},
+     [](const CellLine& line) -> Cell { return line.published_min; }},
+    {{"published_max", Holds::number, "greatest that others simulated"},
+     [](const CellLine& line) -> Cell { return line.published_max; }},
+    {{"published_mean", Holds::number, "mean of what others simulated"},
+     [](const CellLine& line) -> Cell { return line.published_mean; }},
+};
+
+}  // namespace
+
 std::string to_csv(const Summary& summary) {
-  std::string text = "trial,sensor,runs,min,max,mean,real,inside,crps,published_min,published_max,published_mean\n";
-  for (const CellSummary& c : summary.cells()) {
-    const MeasuredCell measured = c.measured.value_or(MeasuredCell{});
-    const bool ran = c.runs > 0;
-    const Row row{io::csv_field(c.trial),
-                  io::csv_field(c.sensor),
-                  std::to_string(c.runs),
-                  ran ? std::to_string(c.min) : "",
-                  ran ? std::to_string(c.max) : "",
-                  ran ? fixed(c.mean, 3) : "",
-                  c.measured ? std::to_string(measured.real) : "",
-                  c.inside ? (*c.inside ? "1" : "0") : "",
-                  optional_text(c.crps, 3),
-                  optional_text(measured.min_sim, 0),
-                  optional_text(measured.max_sim, 0),
-                  optional_text(measured.mean_sim, 3)};
-    for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? "," : "") + row[i];
-    text += '\n';
+  std::ostringstream text;
+  io::TableWriter<CellLine> csv(text, std::span<const Column<CellLine>>(cell_lines));
+  for (const CellSummary& cell : summary.cells()) {
+    const MeasuredCell measured = cell.measured.value_or(MeasuredCell{});
+    csv.write({cell, cell.runs > 0 ? fixed(cell.mean, 3) : "", optional_text(cell.crps, 3),
+               optional_text(measured.min_sim, 0), optional_text(measured.max_sim, 0),
+               optional_text(measured.mean_sim, 3)});
   }
-  return text;
+  return text.str();
 }
 
 std::string to_text(const Summary& summary) {

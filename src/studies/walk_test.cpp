@@ -249,16 +249,6 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
 
 namespace pirsim {
 
-WalkStandard walk_standard(std::string_view name) {
-  std::vector<std::string> names;
-  for (const auto& [known, standard] : Words<WalkStandard>::all) {
-    if (name == known) return standard;
-    names.emplace_back(known);
-  }
-  throw Error(ErrorCode::usage,
-              "'" + std::string(name) + "' isn't a standard of walk tests" + near_or_all(name, names));
-}
-
 WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads, const RowDone& row_done) {
   const studies::WalkTest test(std::move(scene), std::move(spec));
   std::size_t n_done = 0;

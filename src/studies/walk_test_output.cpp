@@ -1,7 +1,9 @@
-#include <iomanip>
+#include <span>
 #include <sstream>
+#include <string_view>
 
 #include "core/text.hpp"
+#include "pirsim/csv.hpp"
 #include "studies/area_tally.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
@@ -63,7 +65,7 @@ io::MapChart map_of(const WalkTest& test, const std::string& title, const std::s
 void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
               Tries PointResult::*motion, const WalkRequirement& requirement, const std::string& time) {
   io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
-  io::MapChart pass = map_of(test, WalkWords(test).pass_title(), "verdict");
+  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
   pass.colours = io::MapChart::Colours::pass_or_fail;
   probability.note = time + "; no colour: nothing could be tried there";
   pass.note = "required: " + percent(requirement.probability);
@@ -84,24 +86,50 @@ std::string capitalised(std::string text) {
 
 }  // namespace
 
+namespace {
+
+struct PointLine {
+  std::string x_m, z_m;  ///< with all decimals
+  const PointResult& point;
+  std::string_view major, minor;
+};
+
+constexpr Column<PointLine> point_lines[]{
+    {{"x_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.x_m; }},
+    {{"z_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.z_m; }},
+    {{"major_tries", Holds::count, "walks across it that are possible"},
+     [](const PointLine& line) -> Cell { return line.point.major.made; }},
+    {{"major_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
+     [](const PointLine& line) -> Cell { return line.point.major.noticed; }},
+    {{"major", Holds::text, "`pass`, `fail`, or `untried` where nobody can walk"},
+     [](const PointLine& line) -> Cell { return line.major; }},
+    {{"minor_tries", Holds::count, "movements of arms over it"},
+     [](const PointLine& line) -> Cell { return line.point.minor.made; }},
+    {{"minor_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
+     [](const PointLine& line) -> Cell { return line.point.minor.noticed; }},
+    {{"minor", Holds::text, "`pass`, `fail`, or `untried` where nobody can sit"},
+     [](const PointLine& line) -> Cell { return line.minor; }},
+    {{"minor_deaf", Holds::count, "of those without notice, in which a sensor saw what moved"},
+     [](const PointLine& line) -> Cell { return line.point.minor.deaf; }},
+};
+
+}  // namespace
+
 std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
+  constexpr int decimals = 4;
   std::ostringstream out;
-  out << "x_m,z_m,major_tries,major_noticed,major,minor_tries,minor_noticed,minor,minor_deaf\n"
-      << std::fixed << std::setprecision(4);
+  io::TableWriter<PointLine> csv(out, std::span<const Column<PointLine>>(point_lines));
   const FloorGrid& grid = test.grid();
-  const auto write = [&](const Tries& tries, const WalkRequirement& requirement) {
-    const char* verdict = tries.made == 0 ? "untried" : passes(tries, requirement) ? "pass" : "fail";
-    out << ',' << tries.made << ',' << tries.noticed << ',' << verdict;
+  const auto verdict = [](const Tries& tries, const WalkRequirement& requirement) -> std::string_view {
+    return tries.made == 0 ? "untried" : passes(tries, requirement) ? "pass" : "fail";
   };
   for (std::size_t row = 0; row < grid.n_rows(); ++row) {
     for (std::size_t column = 0; column < grid.n_columns(); ++column) {
       if (!grid.on_floor(column, row)) continue;
       const Vec2 centre = grid.centre(column, row);
       const PointResult& point = result.points[row * grid.n_columns() + column];
-      out << centre.x << ',' << centre.y;
-      write(point.major, test.spec().major);
-      write(point.minor, test.spec().minor);
-      out << ',' << point.minor.deaf << '\n';
+      csv.write({fixed(centre.x, decimals), fixed(centre.y, decimals), point, verdict(point.major, test.spec().major),
+                 verdict(point.minor, test.spec().minor)});
     }
   }
   return out.str();
@@ -123,11 +151,10 @@ io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) 
   io::Report report;
   report.title = words.title();
   report.paragraphs = {words.method(), signs_of_maps(test.scene())};
-  const std::vector<std::string> by_area = passes_by_area(test, result), sources = words.sources();
+  const std::vector<std::string> by_area = passes_by_area(test, result);
   if (!by_area.empty())
     report.paragraphs.push_back("By area (its sensors in brackets): " + joined(by_area, "; ") + ".");
-  report.paragraphs.insert(report.paragraphs.end(), sources.begin(), sources.end());
-  io::ReportSection major{words.major_heading(), {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
+  io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
   major.paragraphs = {capitalised(words.of_major(count_passes(result, &PointResult::major, spec.major))) + "."};
   minor.paragraphs = {capitalised(words.of_minor(count_passes(result, &PointResult::minor, spec.minor))) + "; " +
                       words.of_deafness(result) + "."};

@@ -21,12 +21,6 @@ std::string seconds(double value) { return plain(value) + " s"; }
 /// "3 of 4"
 std::string told(const PassCount& count) { return std::to_string(count.passed) + " of " + std::to_string(count.tried); }
 
-/// Square metres, and square feet as data sheets have them.
-std::string area(double area_m2) {
-  constexpr double ft2 = 0.3048 * 0.3048;
-  return fixed(area_m2, 1) + " m2 (" + fixed(area_m2 / ft2, 0) + " ft2)";
-}
-
 /// Index of the square that holds the point; none beside the grid.
 std::optional<std::size_t> square_at(const FloorGrid& grid, const Vec2& point) {
   const Vec2 from_corner = (point - grid.centre(0, 0)) / grid.spacing_m() + 0.5;
@@ -62,28 +56,18 @@ std::string WalkWords::planes() const {
   return joined(words, " and ");
 }
 
-std::string WalkWords::coverage_area(const std::string& motion, const PassCount& count, const std::string& how) const {
-  const double cell_m2 = spec_.spacing_m * spec_.spacing_m;
-  return motion + ": coverage area " + area(static_cast<double>(count.passed) * cell_m2) + ", " + told(count) +
-         " cells (" + how + ")";
-}
-
 std::string WalkWords::of_major(const PassCount& count) const {
-  const std::string how = "noticed " + time_of_major() + ", " + required(spec_.major);
-  if (is_after_standard()) return coverage_area("major motion", count, how);
   return "walker noticed " + time_of_major() + " " + required(spec_.major) + ": " + told(count) + " points pass";
 }
 
 std::string WalkWords::of_minor(const PassCount& count) const {
   const std::string arm = spec_.arm ? required(spec_.minor) + ", " + planes() : "";
-  if (is_after_standard()) return coverage_area("minor motion", count, "noticed " + time_of_minor() + ", " + arm);
   return (spec_.arm ? "swinging arm noticed " + time_of_minor() + " " + arm
                     : "sitter's arms noticed " + time_of_minor() + " " + required(spec_.minor)) +
          ": " + told(count) + " points pass";
 }
 
 std::string WalkWords::of_area(const std::string& area, const PassCount& major, const PassCount& minor) const {
-  if (is_after_standard()) return area + ": major motion in " + told(major) + " cells, minor motion in " + told(minor);
   return area + ": walker " + told(major) + " points pass, " + (spec_.arm ? "arm " : "arms ") + told(minor);
 }
 
@@ -114,30 +98,22 @@ std::string WalkWords::of_seats(const WalkTestResult& result) const {
     if (!at || !passes(result.points[*at].minor, spec_.minor)) outside += " " + seat.id;
   }
   if (test_.scene().seats.empty()) return {};
-  return "seats in " + std::string(is_after_standard() ? "cells without minor motion coverage" : "squares that fail") +
-         ":" + named(outside);
+  return "seats in squares that fail:" + named(outside);
 }
 
-std::string WalkWords::title() const {
-  return spec_.name + ": " + (is_after_standard() ? "coverage" : "walk test") + " of " + test_.scene().name;
-}
-
-std::string WalkWords::major_heading() const { return is_after_standard() ? "Major motion" : "Major motion: walking"; }
+std::string WalkWords::title() const { return spec_.name + ": walk test of " + test_.scene().name; }
 
 std::string WalkWords::minor_heading() const {
-  if (is_after_standard()) return "Minor motion";
   return spec_.arm ? "Minor motion: a swinging arm" : "Minor motion: arms of a sitter";
 }
-
-std::string WalkWords::pass_title() const { return is_after_standard() ? "Coverage area" : "Pass or fail"; }
 
 std::string WalkWords::method() const {
   const std::string response =
       ". A try counts as noticed if any sensor reports motion in time; the sensors' response is " +
       responses_in_words(test_.scene(), spec_.sensing) + ".";
-  const std::string places = is_after_standard() ? "In every cell" : "At every point of a grid";
   std::string text =
-      places + " a person of the study's measures walks across in several directions (major motion), and ";
+      "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
+      "and ";
   if (!spec_.arm) {
     return text + "sits there facing several ways and moves both forearms (minor motion)" + response +
            " In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.";
@@ -147,22 +123,6 @@ std::string WalkWords::method() const {
           " m, whose axis is " + plain(arm.height_m) + " m above the floor, swings by " + plain(arm.swing_deg) +
           " degrees and back at " + plain(arm.deg_per_s) + " degrees a second, " + planes() + " (minor motion)";
   return text + response;
-}
-
-std::vector<std::string> WalkWords::sources() const {
-  if (!is_after_standard()) return {};
-  return {
-      "After NEMA WD 7 (2000, 2011), not a conformity test: its full text wasn't read. Read were what "
-      "electronicdesign.com "
-      "(How to test occupancy sensors, 2012) and Cooper Lighting (Occupancy Sensor Testing) tell of it: cells of 3 ft "
-      "at "
-      "most; for major motion a person of 5 ft 3 in to 5 ft 11 in and at most 190 lb, at 4 ft/s, who stops for 2 s at "
-      "each cell's edge; for minor motion an arm of 3 x 3 x 15 in, 36 in above the floor, at 90 degrees a second.",
-      "Assumed, where neither tells: in how many directions a cell is crossed and the arm swings, in which planes and "
-      "how "
-      "far, how many of these tries have to be noticed, until when, and how warm the arm is (" +
-          (spec_.arm ? plain(spec_.arm->temperature_c) : std::string("no arm")) +
-          " degrees C). Cells are tried where they are on the room's floor, the arm over desks, too."};
 }
 
 }  // namespace pirsim::studies

@@ -1,9 +1,8 @@
-// A walk test in words: its own, or those of the standard that it is made after.
+// A walk test in words.
 #pragma once
 
 #include <cstddef>
 #include <string>
-#include <vector>
 
 #include "studies/walk_test.hpp"
 
@@ -35,19 +34,12 @@ class WalkWords {
   [[nodiscard]] std::string time_of_minor() const;
 
   [[nodiscard]] std::string title() const;
-  [[nodiscard]] std::string major_heading() const;
   [[nodiscard]] std::string minor_heading() const;
-  [[nodiscard]] std::string pass_title() const;
   /// What is done, and what the sensors answer by.
   [[nodiscard]] std::string method() const;
-  /// What was read of the standard and what is assumed: paragraphs; none without a standard.
-  [[nodiscard]] std::vector<std::string> sources() const;
 
  private:
-  [[nodiscard]] bool is_after_standard() const noexcept { return spec_.standard.has_value(); }
   [[nodiscard]] std::string required(const WalkRequirement& requirement) const;
-  [[nodiscard]] std::string coverage_area(const std::string& motion, const PassCount& count,
-                                          const std::string& how) const;
   [[nodiscard]] std::string planes() const;
 
   const WalkTest& test_;

@@ -43,8 +43,7 @@ search:
   lines: [{from_m: [0.5, 2.6, -1.2], to_m: [6.5, 2.6, -1.2], tilt_deg: 90}]
 """)
     scene = ("--scene", data / "rooms/meeting_room.gltf", "--script", study)
-    told = called("placements", *scene, "-o", folder / "lit.gltf", "--report", folder / "lit.html", "--maps", folder / "lit",
-                  "--threads", 1).stdout
+    told = called("placements", *scene, "-o", folder / "lit.gltf", "--report", folder / "lit.html", "--threads", 1).stdout
     assert told.startswith("ranked by how seldom light goes off on somebody (delay 1 min)"), told
     assert "6 places tried: " in told and "false-offs an occupied hour" in told, told
     assert told == called("placements", *scene, "--threads", 3).stdout, "threads change the ranking"
@@ -52,7 +51,6 @@ search:
     assert len(ranks) == 3 and [float(r[1]) for r in ranks] == sorted(float(r[1]) for r in ranks), told
     page = (folder / "lit.html").read_text(encoding="utf-8")
     assert "Light, area by area" in page and "false-offs an occupied hour" in page
-    assert (folder / "lit/after.png").exists() or "No set does better" in page
 
     rule = folder / "rule.yaml"
     rule.write_text("pirsim_control: 1\nlights: [{id: light, delay_min: 1, wave_s: 10}]\n")
@@ -91,10 +89,7 @@ def main():
         assert csv.startswith(b"x_m,z_m,PIR1,PIR2,PIR3,PIR4,PIR5\n"), csv[:80]
         call("coverage", study_b, *coarse, "-o", folder / "four", "--threads", 4)
         assert (folder / "four/coverage.csv").read_bytes() == csv, "threads change the map"
-        pictures = [folder / "one" / f"PIR{i}.png" for i in range(1, 6)]
-        assert all(picture.read_bytes().startswith(b"\x89PNG") for picture in pictures)
-        assert (folder / "one/room.png").read_bytes().startswith(b"\x89PNG")  # of all sensors
-        assert pictures[0].read_bytes() == (folder / "four/PIR1.png").read_bytes() != pictures[1].read_bytes()
+        assert [file.name for file in (folder / "one").iterdir()] == ["coverage.csv"]
 
         # Stopped on its way, it says so and leaves no half a map.
         command = [pirsim, "coverage", *scene, "--script", str(study_b), "--threads", "1", "-o", str(folder / "cut")]
@@ -134,30 +129,10 @@ def main():
         call("walktest", walk, *small, "-o", folder / "w2.csv", "--threads", 4)
         assert (folder / "w1.csv").read_bytes() == (folder / "w2.csv").read_bytes()
 
-        def standard(*more, code=0):
-            result = subprocess.run([pirsim, "walktest", *scene, *map(str, more)], capture_output=True, text=True)
-            assert result.returncode == code, (more, result.returncode, result.stderr)
-            return result
-
-        page = folder / "nema.html"
-        told = standard("--standard", "nema-wd7", "-o", folder / "n1.csv", "--report", page).stdout
-        assert re.match(r"major motion: coverage area \d+\.\d m2 \(\d+ ft2\), \d+ of \d+ cells", told), told
-        assert "\nminor motion: coverage area" in told and "seats in cells without minor motion coverage:" in told, told
-        assert "After NEMA WD 7" in page.read_text(encoding="utf-8")
-        call("walktest", data / "studies/nema_wd7.yaml", "-o", folder / "n2.csv")
-        alone = folder / "alone.yaml"
-        alone.write_text("pirsim_walk_test: 1\nstandard: nema-wd7\n")
-        call("walktest", alone, "-o", folder / "n3.csv", "--threads", 1)
-        assert (folder / "n1.csv").read_bytes() == (folder / "n2.csv").read_bytes() == (folder / "n3.csv").read_bytes()
+        call("walktest", data / "studies/nema_wd7.yaml", "-o", folder / "n1.csv")
         points = (folder / "n1.csv").read_text().splitlines()[1:]
         xs = sorted({float(line.split(",")[0]) for line in points})
         assert all(abs(b - a - 0.9144) < 2e-4 for a, b in zip(xs, xs[1:])), xs
-        told = standard("--standard", "nema-wd7", "--set", "spacing_m=1.5", code=3).stderr
-        assert "at most 3 ft" in told and told.count("\n") == 1, told
-        told = standard("--standard", "nema-wd8", code=2).stderr
-        assert "did you mean 'nema-wd7'?" in told and told.count("\n") == 1, told
-        assert "exclude each other" in standard("--standard", "nema-wd7", "--script", walk, code=2).stderr
-        assert "--standard nema-wd7) is missing" in standard(code=2).stderr
 
         sets = ["--set", "spacing_m=0.3", "--set", "search.evaluations=8"]
         ranking = call("placements", data / "studies/placements.yaml", *sets).stdout
@@ -168,13 +143,12 @@ def main():
         by_seats = [data / "studies/placements.yaml", "--set", "by=seats", "--set", "spacing_m=0.5"]
         better = folder / "better.gltf"
         ranking = call("placements", *by_seats, "--set", "search.evaluations=4", "-o", better, "--report",
-                       folder / "sets.html", "--maps", folder / "sets").stdout
+                       folder / "sets.html").stdout
         assert ranking.startswith("ranked by seats where somebody at work is noticed"), ranking
         assert "4 places tried: " in ranking, ranking
         noticed = [int(line.split()[4]) for line in ranking.splitlines() if re.match(r" +\d+ +\d", line)]
         assert len(noticed) == 5 and noticed == sorted(noticed, reverse=True), ranking
         assert "After: the best set" in (folder / "sets.html").read_text() or "No set does better" in (folder / "sets.html").read_text()
-        assert (folder / "sets/before.png").read_bytes().startswith(b"\x89PNG")
         again = subprocess.run([pirsim, "placements", "--scene", better, "--script", by_seats[0], *map(str, by_seats[1:]),
                                 "--set", "sets=[{id: as built}]", "--set", "search.evaluations=4"],
                                capture_output=True, text=True, check=True).stdout

@@ -59,14 +59,14 @@ FLAT_VALUES = {"--rooms": "2", "--residents": "1", "--size": "60", "--layout": "
                "--mount": "ceiling", "--model": "EKMC1601111"}
 ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5", **FLAT_VALUES}
-VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--maps": "maps", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
-          "--cleaning": "none", "--time-zone": "Europe/Berlin", "--standard": "nema-wd7", "--light": "lit.csv", "--schedule": "light.csv"}
+          "--cleaning": "none", "--time-zone": "Europe/Berlin", "--light": "lit.csv"}
 OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv",
            "placements": "better.gltf"}
 
@@ -87,11 +87,11 @@ WRITTEN = {("run",): ((*SHORT, "-o", "rows.csv", "--summary", "sums.md", "--repo
            ("walktest",): ((*ROOM, "--script", "walk_test.yaml", *COARSE[:2], "-o", "walk.csv", "--report", "walk.html"),
                            "walk.csv walk.html"),
            ("placements",): ((*ROOM, "--script", "placements.yaml", *COARSE, "--set", "search.evaluations=2",
-                              "-o", "best.gltf", "--report", "sets.html", "--maps", "plans"),
-                             "best.gltf sets.html plans/before.png"),
+                              "-o", "best.gltf", "--report", "sets.html"),
+                             "best.gltf sets.html"),
            ("room",): (("-o", "room.gltf"), "room.gltf"),
-           ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--schedule", "day.csv", "--report",
-                           "light.html"), "costs.csv lit.csv day.csv light.html"),
+           ("control",): (("rows.csv", "-o", "costs.csv", "--light", "lit.csv", "--report", "light.html"),
+                          "costs.csv lit.csv light.html"),
            ("log",): (("log.csv", "-o", "log_rows.csv", "--report", "log.html"), "log_rows.csv log.html"),
            ("merge",): (("shards", "-o", "all.csv", *STUDY[2:], "--summary", "all.md"), "all.csv all.md")}
 # Take minutes.
@@ -166,9 +166,7 @@ class Options(unittest.TestCase):
                         value += "--suggest",
                     needed = with_folder(option, rest)
                     study_of = "--script", DATA / "studies" / script
-                    if option == "--standard":  # takes the place of a script
-                        study_of = ()
-                    elif option in DAYS and command in ((), ("run",)):
+                    if option in DAYS and command in ((), ("run",)):
                         study_of = () if option in ("--staff", "--home") else ("--staff", 2)
                     result = pirsim(*command, "--scene", "nowhere.gltf", *study_of, *needed, option, *value, code=4,
                                     cwd=folder)
@@ -430,13 +428,11 @@ class Light(unittest.TestCase):
                 lines = [f"{room},{day},{30 * (i + 1)},2026-03-0{day}T10:{(30 * (i + 1)) // 60:02}:{30 * (i + 1) % 60:02},"
                          f"occupied,1,0,0,{int(i == 0)},{'' if room == 2 else 0}" for i in range(60)]
                 write(folder, f"day_0{day}.csv", "room,day,time_s,time,phase,people,arrivals,departures,PIR1,PIR2\n" + "\n".join(lines) + "\n")
-        pirsim("control", self.folder / "set", "--delay", 10, "-q", "-o", self.folder / "costs.csv", "--schedule",
-               self.folder / "light.csv")
+        pirsim("control", self.folder / "set", "--delay", 10, "-q", "-o", self.folder / "costs.csv")
         ten = next(row for row in self.table("costs.csv") if row["delay_min"] == "10")
         self.assertEqual((ten["days"], ten["false_offs"]), ("6", "6"))
         self.assertAlmostEqual(float(ten["lit_h"]), 6 * 21 * 30 / 3600)
         self.assertEqual(ten["dark_share_low"], ten["dark_share_high"])  # all days are alike
-        self.assertEqual(len(self.table("light.csv")), 3 * 96)
         log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
         told = pirsim("control", "--log", log, "--delay", 5, "-o", self.folder / "log_costs.csv")
         self.assertIn("isn't known", told.stdout)
@@ -445,21 +441,15 @@ class Light(unittest.TestCase):
         self.assertAlmostEqual(float(five["lit_h"]), 6 / 60)
         self.assertEqual(five["dark_h"], "")
 
-    def test_a_schedule_is_a_mean_over_runs_and_of_what_is_known(self):
+    def test_a_page_has_a_line_a_run_and_one_of_people_where_they_are_known(self):
         head = "replicate,trial,time_s,time,phase,people,PIR1\n"
         runs = [[f"{run},a,{60 * i},2026-03-02T08:{i:02}:00,x,{int(i > 15)},{int(run == 1)}\n" for i in range(1, 31)] for run in (1, 2)]
         both = write(self.folder, "both.csv", head + "".join(runs[0] + runs[1]))
-        told = pirsim("control", both, "--delay", 0, "--schedule", self.folder / "s.csv")
-        by_time = {row["time"]: row for row in self.table("s.csv")}
-        self.assertEqual((by_time["2026-03-02T08:00"]["light_light"], by_time["2026-03-02T08:00"]["presence_light"]), ("0.5000", "0.0000"))
-        self.assertEqual((by_time["2026-03-02T08:15"]["light_light"], by_time["2026-03-02T08:15"]["presence_light"]), ("0.5000", "1.0000"))
-        self.assertIn("the schedule has 23.5 h of which nothing is known", told.stderr)
         holed = write(self.folder, "holed.csv", head + "".join(runs[0]).replace("2026-03-02T08:07:00", ""))
-        self.assertIn(":8:9: error: time: expected a local time", pirsim("control", holed, "--schedule", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
+        self.assertIn(":8:9: error: time: expected a local time", pirsim("control", holed, "--light", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
         self.assertFalse((self.folder / "h.csv").exists())
         log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
-        pirsim("control", "--log", log, "--delay", 0, "--schedule", self.folder / "l.csv", "--report", self.folder / "l.html")
-        self.assertEqual(self.table("l.csv")[0].keys(), {"time", "light_light"})
+        pirsim("control", "--log", log, "--delay", 0, "--report", self.folder / "l.html")
         self.assertNotIn('"people":true', (self.folder / "l.html").read_text())  # a line of them, hatched or not
         pirsim("control", both, "--report", self.folder / "b.html")
         page = (self.folder / "b.html").read_text()
@@ -492,9 +482,6 @@ class Light(unittest.TestCase):
         self.assertIn("no dataset", pirsim("control", self.folder, code=3).stderr)
         self.assertIn("say which rows", pirsim("control", code=2).stderr)
         self.assertIn("say which rows", pirsim("control", good, "--log", good, code=2).stderr)
-        self.assertIn("a divisor of 60", pirsim("control", good, "--schedule-minutes", 7, code=2).stderr)
-        self.assertIn("no clock", pirsim("control", good, "--schedule", self.folder / "s.csv", code=3).stderr)
-        self.assertFalse((self.folder / "s.csv").exists())
 
 
 class Homes(unittest.TestCase):

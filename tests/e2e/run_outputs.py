@@ -23,8 +23,7 @@ DATASET = ("README.md", "datapackage.json", "provenance.txt", "rooms.csv", "sens
            "dataset.journal", "rooms/room_0001.gltf", "scripts/room_0001/day_01.yaml", "rows/room_0001/day_01.csv",
            "pictures/room_0001.png")
 TABLE = "table.journal", "realizations_0001.bin", "injected/table.journal"
-CONTENTS = {("coverage", "--output"): ("coverage.csv", "PIR1.png", "room.png"),
-            ("placements", "--maps"): ("before.png", "after.png"), ("dataset", "--output"): DATASET,
+CONTENTS = {("coverage", "--output"): ("coverage.csv",), ("dataset", "--output"): DATASET,
             ("calibrate", "--output"): ("recipe.yaml", "weights.csv", "counter.json", "calibration.json",
                                         "calibration.html", "pool/rows/room_0001/day_01.csv"),
             ("reconcile", "--output"): REPORT, ("reconcile plan", "--output"): ("plan.csv", "plan.html", "plan.json", "table/table.journal"),
@@ -272,8 +271,6 @@ class Contents(Case):
         (self.folder / "tiny.yaml").write_text((DATA / "recipes/tiny.yaml").read_text())
         for folder, args, tries in (
                 ("maps", ("coverage", "--scene", room, "--script", "studyB.yaml", *coarse, "-o"), ("--marks",)),
-                ("plans", ("placements", "--scene", room, "--script", "placements.yaml", *coarse, "--set",
-                           "search.evaluations=2", "--maps"), ("--marks",)),
                 ("shards", ("run", *study, "--shard", "1/1", "-o"), ("--marks",)),
                 ("data", ("dataset", "tiny.yaml", "-o"), ())):
             done = pirsim(*args, folder, cwd=self.folder)

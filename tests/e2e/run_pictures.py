@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pictures as a user sees them, by their pixels: previews of a room and maps of a coverage study.
+"""Pictures as a user sees them, by their pixels: previews of a room; and what a report shows of a long run.
 
 Usage: run_pictures.py PIRSIM DATA_DIRECTORY
 """
@@ -19,7 +19,6 @@ duration_s: 40
 people:
   - {id: anna, actions: [{appear: {at_xz_m: [34, -2]}}, {wait: {duration_s: 40}}]}
 """
-MAP = "pirsim_coverage: 1\nspacing_m: 0.25\nduration_s: 2\ntarget: {x_shapes: {}}\n"
 
 
 class Pictures:
@@ -27,7 +26,6 @@ class Pictures:
         self.pirsim, self.data, self.folder = pirsim, data, folder
         write_long_office(folder / "long.gltf")
         (folder / "visit.yaml").write_text(VISIT, encoding="utf-8")
-        (folder / "map.yaml").write_text(MAP, encoding="utf-8")
         self.long = ["--scene", folder / "long.gltf", "--script", folder / "visit.yaml", "--time", 5]
         self.meeting = ["--scene", data / "rooms/meeting_room.gltf", "--script", data / "studies/studyA.yaml", "--time", 20]
 
@@ -73,30 +71,6 @@ def check_leader(pictures):
     print("preview: a line leads from a name to its person")
 
 
-def check_maps(pictures):
-    pictures.call("coverage", "--scene", pictures.folder / "long.gltf", "--script", pictures.folder / "map.yaml", "-o",
-                  pictures.folder / "maps")
-    one = Picture(pictures.folder / "maps/C1.png")
-    margin, px_per_m = 16, (one.width - 2 * 16) / 40
-
-    def pixel(x, z):
-        return round(margin + px_per_m * x), round(margin + px_per_m * (z + 12))
-
-    for x, z in ((20.06, -8), (25, -3.06), (30.06, -10)):
-        px, py = pixel(x, z)
-        near = [sum(one.at(px + dx, py + dy)) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
-        assert min(near) < 60, f"no wall at ({x}, {z}): {near}"
-    assert sum(one.at(*pixel(20.06, -2.0))) > 60, "a wall where it has ended"
-    everything = Picture(pictures.folder / "maps/room.png")
-    yellow = {name: len(Picture(pictures.folder / f"maps/{name}.png").places(lambda colour: colour == (0xfd, 0xe7, 0x25)))
-              for name in ("C1", "C4")}
-    together = len(everything.places(lambda colour: colour == (0xfd, 0xe7, 0x25)))
-    assert together > 1.5 * max(yellow.values()), (together, yellow)
-    reds = box(everything.places(lambda colour: colour == (255, 77, 109)))
-    assert reds[0] < pixel(5, 0)[0] and reds[2] > pixel(36, 0)[0], "the map of all doesn't show all sensors"
-    print("coverage: maps show inner walls, and one is of all sensors")
-
-
 def check_report_of_a_long_run(pictures):
     """It has the charts of a schedule's days, and says what the map of the floor shows."""
     titles = {}
@@ -120,7 +94,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         pictures = Pictures(sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(name))
         checks = {check.__name__: check for check in (check_room_fills_the_picture, check_lettering_is_smooth, check_leader,
-                                                      check_maps, check_report_of_a_long_run)}
+                                                      check_report_of_a_long_run)}
         for check in sys.argv[3:] or checks:
             checks[check](pictures)
 

@@ -48,18 +48,10 @@ def test_a_walk_test_equals_the_command_lines(room, data, command, tmp_path):
     assert set(test.seats) == set(pirsim.compile(room, data / "studies" / "studyA.yaml").seats.names)
 
 
-def test_a_standard_takes_the_place_of_a_script(room, data):
-    standard = pirsim.walk_test(room, standard="nema-wd7", set={"spacing_m": 0.8})
-    written = pirsim.walk_test(room, data / "studies" / "nema_wd7.yaml", set={"spacing_m": 0.8, "major_motion.path_m": 0.8})
-    assert standard.minor_made.max() == 8 and not standard.seats
-    for name in ("major_made", "major_noticed", "minor_made", "minor_noticed", "minor_deaf"):
-        assert np.array_equal(getattr(standard, name), getattr(written, name))
-    with pytest.raises(pirsim.Error, match="did you mean 'nema-wd7'"):
-        pirsim.walk_test(room, standard="nema-wd8")
-    with pytest.raises(TypeError):
-        pirsim.walk_test(room, data / "studies" / "walk_test.yaml", standard="nema-wd7")
-    with pytest.raises(TypeError):
-        pirsim.walk_test(room)
+def test_an_arm_swings_in_place_of_a_sitters(room, data):
+    cells = {"spacing_m": 0.8, "major_motion.path_m": 0.8}
+    test = pirsim.walk_test(room, data / "studies" / "nema_wd7.yaml", set=cells)
+    assert test.minor_made.max() == 8 and not test.seats  # two planes in four directions; an arm sits nowhere
 
 
 def test_faults_of_a_survey_are_told(room, data):

@@ -91,14 +91,10 @@ def read_dataset(folder: PathOr, part: str = "train", *, step_s: float = 30.0, t
     readings of `step_s` seconds: any motion in them, and the people at their end. Raises FileError and InputError, and
     ValueError if a reading isn't a whole number of the dataset's rows."""
     days = []
-    for room, _, row_s, _, motion, people in _core.read_room_days(as_path(folder), part, as_threads(threads)):
-        n_rows = round(step_s / row_s)
-        if n_rows < 1 or abs(n_rows * row_s - step_s) > 1e-6:
+    for room, row_s, motion, people in _core.read_room_days(as_path(folder), part, step_s, as_threads(threads)):
+        if round(step_s / row_s) < 1 or abs(round(step_s / row_s) * row_s - step_s) > 1e-6:
             raise ValueError(f"step_s: a reading of {step_s:g} s isn't a whole number of the dataset's rows of {row_s:g} s")
-        n = len(people) // n_rows
-        rows = motion[:n * n_rows].reshape(n, n_rows, -1)
-        joined = np.where((rows == 1).any(axis=1), np.uint8(1), rows.max(axis=1))  # what is unknown hides no motion
-        days.append(Day(room, joined, people[n_rows - 1:n * n_rows:n_rows].copy()))
+        days.append(Day(room, motion, people))
     return days
 
 

@@ -1,10 +1,10 @@
-// Lines, discs and areas on a picture, with smooth edges.
+// Lines on a picture, with smooth edges.
 #pragma once
 
 #include <algorithm>
-#include <vector>
 
 #include "io/pages/png.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io {
 
@@ -17,18 +17,12 @@ struct PixelBox {
 /// pixels from the top left corner, the middle of the first pixel is at (0.5, 0.5). Colours are sRGB from 0 to 255.
 class Canvas {
  public:
-  static constexpr double no_dashes = 0.0;
-
   explicit Canvas(Pixels& picture, const PixelBox& box = {Vec2(0.0), Vec2(1e9)}) noexcept
       : picture_(&picture), box_(box) {}
 
   /// opacity: from 0 to 1; beyond it is cut off.
   void blend(int x, int y, const Vec3& colour, double opacity);
-  /// Every second stretch of `dash_px` is left out, if that isn't 0.
-  void line(const Vec2& a, const Vec2& b, const Vec3& colour, double width_px, double dash_px = no_dashes);
-  void disc(const Vec2& centre, double radius_px, const Vec3& colour);
-  /// What lies inside of the loops by the even-odd rule, without smooth edges.
-  void area(const std::vector<std::vector<Vec2>>& loops, const Vec3& colour);
+  void line(const Vec2& a, const Vec2& b, const Vec3& colour, double width_px);
 
   /// Calls paint(x, y, centre of the pixel) for all pixels in a box grown by `margin`.
   template <typename Paint>

@@ -7,20 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "io/pages/charts.hpp"
-
 namespace pirsim::io {
 
 struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  ///< (height x width x 3), row by row from the top left, sRGB
 };
-
-/// Squares in the colours that pages use (viridis, from 0 to `max`), white off the floor, outlines black, furniture
-/// black and white, `dashed` polygons white, doors green, a white disc with a nose for each seat, an orange ring round
-/// each of `ringed`, and a red arrow from each marker; discs and arrows point the way they face. Below the map: its
-/// title, what the colours and signs mean, and a scale.
-[[nodiscard]] Pixels drawn(const MapChart& chart);
 
 /// The bytes of a PNG file; rgb as in Pixels. Throws Error(usage) if the sizes don't match.
 [[nodiscard]] std::string to_png(int width, int height, std::span<const std::uint8_t> rgb);

@@ -97,10 +97,6 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
         child->is_map() ? std::vector{*child} : map.list("meetings", limits::list_entries);
     for (const YamlNode& room : rooms) spec.meetings.push_back(read_meetings(room, faults));
   }
-  if (map.child("profile")) {
-    ProfileSpec& profile = spec.profile.emplace();
-    read_part(map, "profile", profile, [&](YamlMap& own) { check_together(profile, faults_by_key(own)); });
-  }
   if (const auto child = map.child("household")) {
     spec.household = read_household(*child, faults);
     if (!map.has("from")) spec.from_h = home_from_h;

@@ -38,22 +38,9 @@ void read_minor(YamlMap& map, WalkTestSpec& spec) {
   }
 }
 
-/// A cell is crossed from edge to edge.
-void fit_path(YamlMap& map, WalkTestSpec& spec) {
-  spec.path_m = spec.spacing_m;
-  if (!range_of(field_of<&WalkTestSpec::path_m>(), spec).holds(spec.path_m))
-    map.faults().error(map.where("spacing_m"),
-                       "spacing_m: nobody can walk across so small a cell: expected 0.5 or more");
-}
-
 WalkTestSpec read(YamlMap& map, const std::string& name) {
   WalkTestSpec spec;
-  spec.name = name;
-  const auto standard = map.choice<std::optional<WalkStandard>>(
-      "standard", std::nullopt,
-      words_of<std::optional<WalkStandard>, WalkStandard>(field_of<&WalkTestSpec::standard>()));
-  if (standard) spec = walk_test_after(*standard);
-  spec.name = map.text("name", spec.name);
+  spec.name = map.text("name", name);
   spec.sensing = read_sensing(map.child("sensing"), map.faults());
   read_numbers_of<&WalkTestSpec::spacing_m, &WalkTestSpec::seed>(map, spec);
   if (const auto node = map.child("person")) {
@@ -61,16 +48,8 @@ WalkTestSpec read(YamlMap& map, const std::string& name) {
     read_numbers(person, spec.person);
     person.finish();
   }
-  bool is_path_given = false;
-  read_part(map, "major_motion", spec.major, [&](YamlMap& own) {
-    read_major(own, spec);
-    is_path_given = own.has("path_m");
-  });
+  read_part(map, "major_motion", spec.major, [&](YamlMap& own) { read_major(own, spec); });
   read_part(map, "minor_motion", spec.minor, [&](YamlMap& own) { read_minor(own, spec); });
-  constexpr double largest_cell_m = 0.9144 + 1e-9;
-  if (standard && spec.spacing_m > largest_cell_m)
-    map.faults().error(map.where("spacing_m"), "spacing_m: a cell of NEMA WD 7 has sides of at most 3 ft (0.9144 m)");
-  if (standard && !is_path_given) fit_path(map, spec);
   spec.effects = read_survey_effects(map);
   return spec;
 }
@@ -80,12 +59,6 @@ WalkTestSpec read(YamlMap& map, const std::string& name) {
 WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return read_versioned(YamlNode::load(read_input(file), overrides), "walk test", "pirsim_walk_test",
                         [&](YamlMap& map) { return read(map, stem_of_input(file)); });
-}
-
-WalkTestSpec read_walk_test(WalkStandard standard, std::span<const std::string> overrides) {
-  const std::string word(word_of(standard)), text = "pirsim_walk_test: 1\nstandard: " + word + "\n";
-  return read_versioned(YamlNode::parse(text, "--standard " + word, overrides), "walk test", "pirsim_walk_test",
-                        [&](YamlMap& map) { return read(map, word); });
 }
 
 }  // namespace pirsim::io

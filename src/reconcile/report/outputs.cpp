@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 
 #include "io/files/atomic_file.hpp"
@@ -204,27 +205,64 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+namespace {
+
+constexpr Column<LocatedCell> located_cells[]{
+    {{"trial", Holds::text, "as the script names it"}, [](const LocatedCell& cell) -> Cell { return cell.trial; }},
+    {{"sensor", Holds::text, "as the scene names it"}, [](const LocatedCell& cell) -> Cell { return cell.sensor; }},
+    {{"measured_s", Holds::number, "seconds with motion a run", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.measured_s; }},
+    {{"expected_s", Holds::number, "mean of the simulated datasets", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.expected_s; }},
+    {{"difference_s", Holds::number, "measured less expected", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.measured_s - cell.expected_s; }},
+    {{"low_s", Holds::number, "2.5 % of the simulated datasets lie below", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.low_s; }},
+    {{"high_s", Holds::number, "2.5 % of the simulated datasets lie above", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.high_s; }},
+    {{"adjusted_p", Holds::number, "below alpha, the cell differs whatever the others do"},
+     [](const LocatedCell& cell) -> Cell { return cell.adjusted_p; }},
+};
+
+struct CandidateLine {
+  const Candidate& candidate;
+  std::string reason;
+};
+
+constexpr Column<CandidateLine> candidate_lines[]{
+    {{"effect", Holds::text, "its name"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.hypothesis; }},
+    {{"family", Holds::text, "its family"},
+     [](const CandidateLine& line) -> Cell { return name(line.candidate.family); }},
+    {{"kept", Holds::bit, "1 if it isn't ruled out"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.kept ? 1 : 0; }},
+    {{"probability", Holds::number, "among all effects, each as likely as the others beforehand"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.probability; }},
+    {{"p", Holds::number, "of the next two: twice the smaller, at most 1"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p; }},
+    {{"p_relative", Holds::number, "share of its own datasets that another effect explains as well"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_relative; }},
+    {{"p_absolute", Holds::number, "share of its own datasets that lie as far from the rest of them"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_absolute; }},
+    {{"p_own", Holds::number, "share of its own datasets that look as much like those of an unknown effect"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_own; }},
+    {{"reason", Holds::text, "why it was kept or ruled out"},
+     [](const CandidateLine& line) -> Cell { return line.reason; }},
+};
+
+}  // namespace
+
 std::string where_csv(const Outcome& outcome) {
   std::ostringstream out;
-  out << "trial,sensor,measured_s,expected_s,difference_s,low_s,high_s,adjusted_p\n";
-  for (const LocatedCell& cell : outcome.location.cells) {
-    out << io::csv_field(cell.trial) << ',' << io::csv_field(cell.sensor) << ',' << io::csv_number(cell.measured_s)
-        << ',' << io::csv_number(cell.expected_s) << ',' << io::csv_number(cell.measured_s - cell.expected_s) << ','
-        << io::csv_number(cell.low_s) << ',' << io::csv_number(cell.high_s) << ',' << io::csv_number(cell.adjusted_p)
-        << '\n';
-  }
+  io::TableWriter<LocatedCell> csv(out, std::span<const Column<LocatedCell>>(located_cells));
+  for (const LocatedCell& cell : outcome.location.cells) csv.write(cell);
   return out.str();
 }
 
 std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
-  out << "effect,family,kept,probability,p,p_relative,p_absolute,p_own,reason\n";
-  for (const Candidate& c : with_twins(outcome.candidates)) {
-    out << c.score.hypothesis << ',' << name(c.family) << ',' << (c.kept ? 1 : 0) << ','
-        << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
-        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
-        << io::csv_number(c.score.p_own) << ',' << io::csv_field(in_words(c)) << '\n';
-  }
+  io::TableWriter<CandidateLine> csv(out, std::span<const Column<CandidateLine>>(candidate_lines));
+  for (const Candidate& candidate : with_twins(outcome.candidates)) csv.write({candidate, in_words(candidate)});
   return out.str();
 }
 

@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 
 #include "core/text.hpp"
@@ -117,14 +118,35 @@ std::string to_json(const PlanResult& result) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+namespace {
+
+struct DesignLine {
+  const Design& design;
+  std::string name;
+};
+
+constexpr Column<DesignLine> design_lines[]{
+    {{"design", Holds::text, "what would be measured"}, [](const DesignLine& line) -> Cell { return line.name; }},
+    {{"minutes", Holds::number, "more than what is planned; of the plan itself all of it", "min"},
+     [](const DesignLine& line) -> Cell { return line.design.minutes; }},
+    {{"bits", Holds::number, "told about which effect it is, mean over datasets"},
+     [](const DesignLine& line) -> Cell { return line.design.bits; }},
+    {{"right", Holds::number, "share of datasets whose effect is the likeliest"},
+     [](const DesignLine& line) -> Cell { return line.design.right; }},
+    {{"more_bits", Holds::number, "than what is planned"},
+     [](const DesignLine& line) -> Cell { return line.design.more_bits; }},
+    {{"more_bits_low", Holds::number, "low end of their 95 % interval"},
+     [](const DesignLine& line) -> Cell { return line.design.more_bits_95.low; }},
+    {{"more_bits_high", Holds::number, "high end of their 95 % interval"},
+     [](const DesignLine& line) -> Cell { return line.design.more_bits_95.high; }},
+};
+
+}  // namespace
+
 std::string to_csv(const PlanResult& result) {
   std::ostringstream out;
-  out << "design,minutes,bits,right,more_bits,more_bits_low,more_bits_high\n";
-  for (const Design& d : result.designs) {
-    out << io::csv_field(name(d)) << ',' << io::csv_number(d.minutes) << ',' << io::csv_number(d.bits) << ','
-        << io::csv_number(d.right) << ',' << io::csv_number(d.more_bits) << ',' << io::csv_number(d.more_bits_95.low)
-        << ',' << io::csv_number(d.more_bits_95.high) << '\n';
-  }
+  io::TableWriter<DesignLine> csv(out, std::span<const Column<DesignLine>>(design_lines));
+  for (const Design& design : result.designs) csv.write({design, name(design)});
   return out.str();
 }
 

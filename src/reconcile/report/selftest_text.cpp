@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <span>
 #include <sstream>
 
 #include "core/text.hpp"
@@ -108,22 +109,53 @@ std::string to_markdown(const SelftestResult& result) {
   return out.str();
 }
 
+namespace {
+
+struct CaseLine {
+  const InjectedCase& one;
+  std::string named, hidden;
+};
+
+constexpr Column<CaseLine> case_lines[]{
+    {{"dataset", Holds::count, "which dataset of those that were injected"},
+     [](const CaseLine& line) -> Cell { return static_cast<std::int64_t>(line.one.injected); }},
+    {{"kind", Holds::text, "what was hidden"}, [](const CaseLine& line) -> Cell { return name(line.one.kind); }},
+    {{"truth", Holds::text, "the effects hidden, or nothing"},
+     [](const CaseLine& line) -> Cell { return line.one.truth; }},
+    {{"strength", Holds::text, "how strong"}, [](const CaseLine& line) -> Cell { return name(line.one.strength); }},
+    {{"verdict", Holds::text, "what the workflow says"},
+     [](const CaseLine& line) -> Cell { return name(line.one.verdict); }},
+    {{"named", Holds::text, "effects that it names, or can't tell apart"},
+     [](const CaseLine& line) -> Cell { return line.named; }},
+    {{"family", Holds::text, "that it tells"},
+     [](const CaseLine& line) -> Cell { return line.one.family ? Cell(name(*line.one.family)) : Cell(); }},
+    {{"likeliest", Holds::text, "effect with the greatest probability"},
+     [](const CaseLine& line) -> Cell { return line.one.likeliest; }},
+    {{"p", Holds::number, "of the global test"}, [](const CaseLine& line) -> Cell { return line.one.p; }},
+    {{"parameters", Holds::count, "fitted, if the right effect was named"},
+     [](const CaseLine& line) -> Cell { return static_cast<std::int64_t>(line.one.n_parameters); }},
+    {{"covered", Holds::count, "of them, whose interval holds the truth"},
+     [](const CaseLine& line) -> Cell { return static_cast<std::int64_t>(line.one.n_covered); }},
+    {{"hidden", Holds::text, "parameters of what was hidden"},
+     [](const CaseLine& line) -> Cell { return line.hidden; }},
+};
+
+CaseLine line_of(const InjectedCase& one) {
+  CaseLine line{one, joined(one.named, " "), {}};
+  for (const EffectSpec& effect : one.effects) {
+    for (const auto& [parameter, value] : effect.parameters)
+      line.hidden += (line.hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+    for (const auto& [choice, value] : effect.choices) line.hidden += " " + choice + "=" + value;
+  }
+  return line;
+}
+
+}  // namespace
+
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "dataset,kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,hidden\n";
-  for (const InjectedCase& c : result.cases) {
-    std::string named, hidden;
-    for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
-    for (const EffectSpec& effect : c.effects) {
-      for (const auto& [parameter, value] : effect.parameters) {
-        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
-      }
-      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
-    }
-    out << c.injected << ',' << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict)
-        << ',' << named << ',' << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p)
-        << ',' << c.n_parameters << ',' << c.n_covered << ',' << io::csv_field(hidden) << '\n';
-  }
+  io::TableWriter<CaseLine> csv(out, std::span<const Column<CaseLine>>(case_lines));
+  for (const InjectedCase& one : result.cases) csv.write(line_of(one));
   return out.str();
 }
 

@@ -67,16 +67,6 @@ struct Fields<MeetingsSpec> {
                                   LABEL(where)};
 };
 template <>
-struct Fields<ProfileSpec> {
-  using S = ProfileSpec;
-  static constexpr const char* name = "Profile";
-  static constexpr const char* about = "Presence as a Markov chain that follows a profile.";
-  static constexpr std::tuple all{
-      FIELD(presence, accepted::probability, "share of people present in each of the 24 hours of a working day"),
-      FIELD(mobility, NumberRange{.min = 0.0, .max = 10.0}, "of the chain"),
-      FIELD(step_min, NumberRange{.min = 1.0, .max = 120.0})};
-};
-template <>
 struct Fields<ResidentSpec> {
   using S = ResidentSpec;
   static constexpr const char* name = "Resident";
@@ -114,7 +104,6 @@ struct Fields<ScheduleSpec> {
       FIELD(to_h, accepted::hour_or_next_days, "and ends; with a household 28, four o'clock of the next day"),
       FIELD(staff),
       FIELD(meetings, "of each room in which some are held"),
-      FIELD(profile, "instead of the agents' times and moves"),
       FIELD(household, "instead of staff, meetings and cleaning"),
       FIELD(arrival),
       FIELD(departure),

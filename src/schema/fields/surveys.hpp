@@ -96,7 +96,6 @@ struct Fields<WalkTestSpec> {
   using S = WalkTestSpec;
   static constexpr std::tuple all{
       LABEL(name),
-      LABEL(standard),
       FIELD(sensing),
       FIELD(spacing_m, NumberRange{.min = 0.05, .max = 10.0}, "of the points"),
       FIELD(person),

@@ -120,9 +120,8 @@ TEST_CASE("Days are the same for any threads and in any part of the study") {
 }
 
 TEST_CASE("All come at once through one door") {
-  const Model model = model_of(
-      "  from: 08:59\n  to: 09:04\n  staff: [{count: 8}]\n"
-      "  profile: {presence: [0,0,0,0,0,0,0,0,0,1,1,1,1,1,1,1,1,0,0,0,0,0,0,0], step_min: 1}\n");
+  const Model model =
+      model_of("  from: 08:59\n  to: 09:04\n  staff: [{count: 8}]\n  arrival: {mean: 09:00, sd_min: 0}\n");
   const RunResult result = run_once(model, 0);
   CHECK(!result.fault);
   CHECK(result.samples.back().people == 8);

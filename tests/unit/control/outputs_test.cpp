@@ -1,4 +1,4 @@
-// What is told of lights: schedules, tables, and which delay to take.
+// What is told of lights: tables, and which delay to take.
 #include "control/outputs.hpp"
 
 #include <cmath>
@@ -24,97 +24,25 @@ RuleSpec rule_with(std::vector<double> delays_min) {
   return {"test", {light}};
 }
 
-/// A row that ends at these seconds of 2 March 2026, or of another day.
-Sample row_at(double ends_s, std::uint8_t bit, int people, int replicate = 1, const std::string& date = "2026-03-02") {
+/// A row that ends at these seconds of 2 March 2026.
+Sample row_at(double ends_s, std::uint8_t bit, int people, int replicate = 1) {
   Sample row;
   row.replicate = replicate;
   row.trial = "1";
   row.time_s = ends_s;
-  row.clock =
-      clock_text(day_number(date, {}) + static_cast<std::int64_t>(ends_s / 86400.0), std::fmod(ends_s, 86400.0));
+  row.clock = clock_text(day_number("2026-03-02", {}), ends_s);
   row.people = people;
   row.bits = {bit};
   return row;
 }
 
-/// Rows of a minute through a control and a schedule of half hours.
-struct Scheduled {
-  explicit Scheduled(People people = People::known, double window_s = minute_s)
-      : control(rule_with({0.0}), one_sensor, window_s, people), schedule(rule_with({0.0}), window_s, 30, people) {}
-  void add(const Sample& row) { schedule.add(control.add(row)); }
-  [[nodiscard]] std::string text() const {
-    std::ostringstream text;
-    schedule.write(text);
-    return text.str();
-  }
-  Control control;
-  Schedule schedule;
-};
-
-constexpr double eleven_pm_s = 23 * 3600.0;
-
 }  // namespace
 
-TEST_CASE("a schedule has whole days, with the shares of each step") {
-  Scheduled day;
-  for (int i = 0; i < 60; ++i) day.add(row_at(eleven_pm_s + minute_s * (i + 1), i < 15, i < 45 ? 1 : 0));
-  CHECK(day.schedule.n_days() == 1);  // the last row ends at midnight
-  CHECK_THAT(day.text(), contains("time,light_desk,presence_desk\n2026-03-02T00:00,0.0000,0.0000\n"));
-  CHECK_THAT(
-      day.text(),
-      contains("2026-03-02T22:30,0.0000,0.0000\n2026-03-02T23:00,0.5000,1.0000\n2026-03-02T23:30,0.0000,0.5000\n"));
-  CHECK(std::ranges::count(day.text(), '\n') == 49);
-  CHECK_THAT(day.schedule.remarks().at(0).message,
-             contains("has 23.0 h of which nothing is known: it is dark and empty there"));
-}
-
-TEST_CASE("a schedule is the mean over runs of a date, and over the rows that are known") {
-  Scheduled day;
-  for (const int replicate : {1, 2, 3, 4}) {
-    for (int i = 0; i < 60; ++i)
-      day.add(row_at(eleven_pm_s + minute_s * (i + 1), replicate == 1, replicate <= 2 ? 1 : 0, replicate));
-    day.add(row_at(86400.0 + minute_s, 0, 0, replicate));
-  }
-  CHECK_THAT(day.text(), contains("2026-03-02T23:00,0.2500,0.5000\n2026-03-02T23:30,0.2500,0.5000\n"));
-  CHECK_THAT(day.text(), contains("2026-03-03T00:00,0.0000,0.0000\n"));
-  Scheduled gaps;  // ten minutes lit, ten dark, ten unknown
-  for (int i = 0; i < 30; ++i)
-    gaps.add(row_at(minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), i < 10 ? 1 : -1));
-  CHECK_THAT(gaps.text(), contains("T00:00,1.0000,1.0000\n"));  // where people aren't counted nothing is
-  Scheduled unpeopled(People::unknown);
-  for (int i = 0; i < 30; ++i)
-    unpeopled.add(row_at(minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), -1));
-  CHECK_THAT(unpeopled.text(), contains("time,light_desk\n2026-03-02T00:00,0.5000\n2026-03-02T00:30,0.0000\n"));
-  Scheduled uncounted;  // a column of people in which nothing stands
-  for (int i = 0; i < 30; ++i) uncounted.add(row_at(minute_s * (i + 1), 1, -1));
-  CHECK_THROWS_WITH(uncounted.text(), contains("there is no schedule of light 'desk': nothing is known of it"));
-}
-
-TEST_CASE("rows longer than a schedule's step cover all of theirs") {
-  Scheduled hours(People::known, 2.0 * 3600.0);
-  hours.add(row_at(2.0 * 3600.0 + 900.0, 1, 1));  // from 00:15
-  CHECK_THAT(hours.text(), contains("T00:00,1.0000,1.0000\n2026-03-02T00:30,1.0000,1.0000\n"));
-  CHECK_THAT(hours.text(), contains("T02:00,1.0000,1.0000\n2026-03-02T02:30,0.0000,0.0000\n"));
-  Scheduled night(People::known, 3600.0);
-  night.add(row_at(86400.0 + 1800.0, 1, 1));  // over midnight
-  CHECK_THAT(night.text(),
-             contains("2026-03-02T23:30,1.0000,1.0000\n2026-03-03T00:00,1.0000,1.0000\n2026-03-03T00:30,0.0"));
-}
-
-TEST_CASE("a schedule tells of leap days and missing dates, and wants a clock") {
-  Scheduled leap, gap;
-  for (const char* date : {"2028-02-28", "2028-02-29", "2028-03-01"}) {
-    for (int i = 0; i < 48; ++i) leap.add(row_at(1800.0 * (i + 1), 0, 0, 1, date));
-  }
-  REQUIRE(leap.schedule.n_days() == 3);
-  CHECK_THAT(leap.schedule.remarks().back().message, contains("of a leap year `Schedule:File` takes 8784 hours"));
-  for (const char* date : {"2026-02-28", "2026-03-02"}) gap.add(row_at(60.0, 0, 0, 1, date));
-  CHECK_THAT(gap.schedule.remarks().back().message, contains("lacks 1 date between its first and its last"));
-  Sample row = row_at(60.0, 0, 0);
-  row.clock.clear();
-  CHECK_THROWS_WITH(gap.add(row), contains("rows have no clock"));
+TEST_CASE("a row's time that is none is told") {
+  Control control(rule_with({1.0}), one_sensor, minute_s, People::known);
+  Sample row = row_at(minute_s, 0, 0);
   row.clock = "8 o'clock";
-  CHECK_THROWS_WITH(gap.add(row), contains("the time '8 o'clock' of a row is none"));
+  CHECK_THROWS_WITH(control.add(row), contains("the time '8 o'clock' of a row is none"));
 }
 
 TEST_CASE("what isn't known of people is empty, not 0") {
@@ -133,8 +61,7 @@ TEST_CASE("what isn't known of people is empty, not 0") {
   CHECK_THAT(line_of(People::known, -1), contains("desk,1,0,0,0,0,0,0,,,,0,0,,,,,,,0,,desk: nothing is known"));
 }
 
-// -------------------------------------------------------------------------------------------------- which delay to
-// take
+// -------------------------------------------------------------------------------------------- which delay to take
 
 namespace {
 

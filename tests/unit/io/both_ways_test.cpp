@@ -123,7 +123,6 @@ ScriptSpec plain_schedule() {
   schedule.meetings.emplace_back();
   schedule.meetings[0].most_people = 4;
   schedule.meetings[0].held = {HeldMeetingSpec{}};
-  schedule.profile = ProfileSpec{std::vector<double>(24, 0.5)};
   schedule.cleaning_h = 19.0;
   script.trials.front().schedule = schedule;
   return script;
@@ -237,7 +236,6 @@ TEST_CASE("a number out of its range is refused by file and by object", "[both-w
   n += schedule_numbers<MeetingsSpec>([](ScheduleSpec& s) -> MeetingsSpec& { return s.meetings[0]; });
   n +=
       schedule_numbers<HeldMeetingSpec>([](ScheduleSpec& s) -> HeldMeetingSpec& { return s.meetings[0].held.front(); });
-  n += schedule_numbers<ProfileSpec>([](ScheduleSpec& s) -> ProfileSpec& { return *s.profile; });
   n += sensor_numbers<SensorModelSpec>([](SensorModelSpec& m) -> SensorModelSpec& { return m; });
   n += sensor_numbers<ClusterSpec>([](SensorModelSpec& m) -> ClusterSpec& { return m.clusters.front(); });
   n += sensor_numbers<OpticsSpec>([](SensorModelSpec& m) -> OpticsSpec& { return m.optics; });
@@ -304,7 +302,6 @@ TEST_CASE("what else a script can't be is refused by file and by object", "[both
   schedule("lunch.mean_h", [](ScheduleSpec& s) { s.lunch.mean_h = 24.5; });
   schedule("cleaning_h", [](ScheduleSpec& s) { s.cleaning_h = 24.5; });
   schedule("staff", [](ScheduleSpec& s) { s = ScheduleSpec{}; });
-  schedule("profile.presence", [](ScheduleSpec& s) { s.profile->presence.pop_back(); });
   schedule("meetings[0].probabilities", [](ScheduleSpec& s) { s.meetings[0].probabilities.pop_back(); });
   schedule("meetings[0].probabilities", [](ScheduleSpec& s) { s.meetings[0].probabilities.assign(4, 0.0); });
   schedule("meetings[0].to_h", [](ScheduleSpec& s) { s.meetings[0].to_h = s.meetings[0].from_h; });

@@ -65,7 +65,6 @@ TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  meetings: {held: [{at: 23:30, duration_min: 60}]}\n", "beyond midnight");
   refused("  meetings: {probabilities: [1, 2]}\n", "probabilities: expected");
   refused("  meetings: {probabilities: [0.5, 0.5]}\n", "probabilities: expected one for each of durations_min");
-  refused("  staff: [{count: 2}]\n  profile: {presence: [0, 1]}\n", "presence: expected 24 shares");
   refused("  staff: [{count: 2}]\n", "leave out duration_s", "duration_s: 90000\n");
 }
 

@@ -295,51 +295,6 @@ TEST_CASE("Rates of moves give back shares and mean stays by brute force") {
   }
 }
 
-TEST_CASE("Presence follows its profile whatever the mobility") {
-  Stream stream({3, 0, 0, Purpose::test});
-  for (int k = 0; k < 10000; ++k) {
-    const double now = stream.uniform(), next = stream.uniform(), mobility = 3.0 * stream.uniform();
-    const ProfileStep step = profile_step(now, next, mobility);
-    CHECK(now * step.stays + (1.0 - now) * step.comes == Approx(next).margin(1e-12));
-    CHECK((step.comes >= 0.0 && step.comes <= 1.0 && step.stays >= 0.0 && step.stays <= 1.0));
-    // [Page2008], where it gives chances.
-    const double comes = (mobility - 1.0) / (mobility + 1.0) * now + next;
-    const double stays = (now - 1.0) / now * comes + next / now;
-    if (comes < 0.0 || comes > 1.0 || stays < 0.0 || stays > 1.0) continue;
-    CHECK(step.comes == Approx(comes).margin(1e-12));
-    CHECK(step.stays == Approx(stays).margin(1e-9));
-  }
-}
-
-TEST_CASE("Days after a profile show it hour by hour") {
-  ScheduleSpec schedule;
-  schedule.profile.emplace();
-  schedule.profile->presence = {0,   0,   0,   0,   0,    0,   0.05, 0.1, 0.4, 0.9,  0.95, 0.9,
-                                0.5, 0.8, 0.9, 0.9, 0.85, 0.6, 0.3,  0.1, 0.1, 0.05, 0,    0};
-  const auto days = draw_days(schedule, people(SchedulePart::staff, 8));
-  const auto worst = [&](const std::vector<double>& profile) {
-    double worst_z = 0.0;
-    for (std::size_t hour = 0; hour < 24; ++hour) {
-      double present = 0.0, n = 0.0;
-      for (const DayDraw& day : days) {
-        for (const auto& stays : day.stays) {
-          const double at_s = static_cast<double>(hour) * hour_s;
-          present += std::ranges::any_of(stays, [&](const Stay& s) { return s.from_s <= at_s && at_s < s.to_s; });
-          n += 1.0;
-        }
-      }
-      const double p = std::clamp(profile[hour], 1e-6, 1.0);
-      worst_z = std::max(worst_z, std::abs(present - n * p) / std::sqrt(std::max(1.0, n * p * (1.0 - p))));
-    }
-    return worst_z;
-  };
-  constexpr double limit = 4.1;  // 0.001 among 24
-  CHECK(worst(schedule.profile->presence) < limit);
-  auto off = schedule.profile->presence;
-  off[12] += 0.06;
-  CHECK(worst(off) > limit);
-}
-
 TEST_CASE("Nobody comes on Saturdays and Sundays") {
   ScheduleSpec schedule;
   schedule.meetings.emplace_back();
