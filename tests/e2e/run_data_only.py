@@ -36,27 +36,30 @@ HIDDEN = "effects=[{sensor_tilt: {tilt_deg: 1}}, {false_triggers: {rate_per_s: 0
 SMALLEST = 0.05  # of the budget
 
 
-def call(*words, code=0):
-    result = subprocess.run([str(PIRSIM), *map(str, words)], capture_output=True, text=True)
-    assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+def call(*words, cwd):
+    result = subprocess.run([str(PIRSIM), *map(str, words)], capture_output=True, text=True, cwd=cwd)
+    assert result.returncode == 0, (words, result.returncode, result.stdout, result.stderr)
     return result.stdout
 
 
 def study_in(folder, seed):
     folder.mkdir()
     (folder / "study.yaml").write_text(SCRIPT.replace("SEED", str(seed)))
-    return ["--scene", DATA / "rooms/meeting_room.gltf", "--script", folder / "study.yaml"]
+    return folder
+
+
+STUDY = "--scene", "meeting_room.gltf", "--script", "study.yaml"  # where it lies stands in the report
 
 
 def measured(study, file, seed):
     """Rows of this room with something hidden, as somebody measures them: people aren't counted."""
-    rows = list(csv.reader(call("run", *study, "--seed", seed, "--set", HIDDEN, "-q").splitlines()))
+    rows = list(csv.reader(call("run", *STUDY, "--seed", seed, "--set", HIDDEN, "-q", cwd=study).splitlines()))
     people = rows[0].index("people")
     file.write_text("".join(",".join(row[:people] + row[people + 1:]) + "\n" for row in rows))
 
 
 def analyse(study, measured, out, *more):
-    call("reconcile", *study, "--measured", measured, "--budget", SMALLEST, "-o", out, "-q", *more)
+    call("reconcile", *STUDY, "--measured", measured, "--budget", SMALLEST, "-o", out, "-q", *more, cwd=study)
     return json.loads((out / "report.json").read_text())
 
 
