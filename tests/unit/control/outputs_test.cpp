@@ -14,10 +14,10 @@ using namespace pirsim::control;
 
 namespace {
 
-constexpr double minute_s = 60.0;
-const ColumnOwners one_sensor{{"PIR"}, {}, {}};
+constexpr double a_minute_s = 60.0;
+const ColumnOwners one_sensor_alone{{"PIR"}, {}, {}};
 
-RuleSpec rule_with(std::vector<double> delays_min) {
+RuleSpec desk_rule(std::vector<double> delays_min) {
   LightSpec light;
   light.id = "desk";
   light.delays_min = std::move(delays_min);
@@ -39,8 +39,9 @@ Sample row_at(double ends_s, std::uint8_t bit, int people, int replicate = 1, co
 
 /// Rows of a minute through a control and a schedule of half hours.
 struct Scheduled {
-  explicit Scheduled(People people = People::known, double window_s = minute_s)
-      : control(rule_with({0.0}), one_sensor, window_s, people), schedule(rule_with({0.0}), window_s, 30, people) {}
+  explicit Scheduled(People people = People::known, double window_s = a_minute_s)
+      : control(desk_rule({0.0}), one_sensor_alone, window_s, people),
+        schedule(desk_rule({0.0}), window_s, 30, people) {}
   void add(const Sample& row) { schedule.add(control.add(row)); }
   [[nodiscard]] std::string text() const {
     std::ostringstream text;
@@ -57,7 +58,7 @@ constexpr double eleven_pm_s = 23 * 3600.0;
 
 TEST_CASE("a schedule has whole days, with the shares of each step") {
   Scheduled day;
-  for (int i = 0; i < 60; ++i) day.add(row_at(eleven_pm_s + minute_s * (i + 1), i < 15, i < 45 ? 1 : 0));
+  for (int i = 0; i < 60; ++i) day.add(row_at(eleven_pm_s + a_minute_s * (i + 1), i < 15, i < 45 ? 1 : 0));
   CHECK(day.schedule.n_days() == 1);  // the last row ends at midnight
   CHECK_THAT(day.text(), contains("time,light_desk,presence_desk\n2026-03-02T00:00,0.0000,0.0000\n"));
   CHECK_THAT(
@@ -72,21 +73,21 @@ TEST_CASE("a schedule is the mean over runs of a date, and over the rows that ar
   Scheduled day;
   for (const int replicate : {1, 2, 3, 4}) {
     for (int i = 0; i < 60; ++i)
-      day.add(row_at(eleven_pm_s + minute_s * (i + 1), replicate == 1, replicate <= 2 ? 1 : 0, replicate));
-    day.add(row_at(86400.0 + minute_s, 0, 0, replicate));
+      day.add(row_at(eleven_pm_s + a_minute_s * (i + 1), replicate == 1, replicate <= 2 ? 1 : 0, replicate));
+    day.add(row_at(86400.0 + a_minute_s, 0, 0, replicate));
   }
   CHECK_THAT(day.text(), contains("2026-03-02T23:00,0.2500,0.5000\n2026-03-02T23:30,0.2500,0.5000\n"));
   CHECK_THAT(day.text(), contains("2026-03-03T00:00,0.0000,0.0000\n"));
   Scheduled gaps;  // ten minutes lit, ten dark, ten unknown
   for (int i = 0; i < 30; ++i)
-    gaps.add(row_at(minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), i < 10 ? 1 : -1));
+    gaps.add(row_at(a_minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), i < 10 ? 1 : -1));
   CHECK_THAT(gaps.text(), contains("T00:00,1.0000,1.0000\n"));  // where people aren't counted nothing is
   Scheduled unpeopled(People::unknown);
   for (int i = 0; i < 30; ++i)
-    unpeopled.add(row_at(minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), -1));
+    unpeopled.add(row_at(a_minute_s * (i + 1), static_cast<std::uint8_t>(i < 10 ? 1 : i < 20 ? 0 : 2), -1));
   CHECK_THAT(unpeopled.text(), contains("time,light_desk\n2026-03-02T00:00,0.5000\n2026-03-02T00:30,0.0000\n"));
   Scheduled uncounted;  // a column of people in which nothing stands
-  for (int i = 0; i < 30; ++i) uncounted.add(row_at(minute_s * (i + 1), 1, -1));
+  for (int i = 0; i < 30; ++i) uncounted.add(row_at(a_minute_s * (i + 1), 1, -1));
   CHECK_THROWS_WITH(uncounted.text(), contains("there is no schedule of light 'desk': nothing is known of it"));
 }
 
@@ -119,8 +120,8 @@ TEST_CASE("a schedule tells of leap days and missing dates, and wants a clock") 
 
 TEST_CASE("what isn't known of people is empty, not 0") {
   const auto line_of = [](People people, int n) {
-    Control control(rule_with({1.0}), one_sensor, minute_s, people);
-    for (int i = 0; i < 60; ++i) control.add(row_at(minute_s * (i + 1), i < 30, n));
+    Control control(desk_rule({1.0}), one_sensor_alone, a_minute_s, people);
+    for (int i = 0; i < 60; ++i) control.add(row_at(a_minute_s * (i + 1), i < 30, n));
     const Costs costs = control.finish();
     const std::string text = to_csv(costs);
     const std::size_t at = text.find("desk,1,");
@@ -140,9 +141,9 @@ namespace {
 
 /// Days of ten hours in which somebody is there; a minute's motion after each of these pauses, round and round.
 LightCosts costs_of(int n_days, const std::vector<int>& pauses_min, double rule_min = 10.0, double at_most = 1.0) {
-  RuleSpec rule = rule_with({rule_min});
+  RuleSpec rule = desk_rule({rule_min});
   rule.lights.front().at_most_a_week = at_most;
-  Control control(rule, one_sensor, minute_s);
+  Control control(rule, one_sensor_alone, a_minute_s);
   std::size_t pause = 0;
   int still = 0;
   for (int day = 0; day < n_days; ++day) {
@@ -150,7 +151,7 @@ LightCosts costs_of(int n_days, const std::vector<int>& pauses_min, double rule_
       const bool moves = still >= pauses_min[pause] || i == 0;
       if (moves && i > 0) pause = (pause + 1) % pauses_min.size();
       still = moves ? 0 : still + 1;
-      Sample row = row_at(minute_s * (i + 1), moves, 1, day);
+      Sample row = row_at(a_minute_s * (i + 1), moves, 1, day);
       row.clock.clear();
       control.add(row);
     }
@@ -197,10 +198,10 @@ TEST_CASE("the advised delay is long enough in 95 of 100 samples, of motion whos
   int wrong = 0, shown = 0;
   double sum = 0.0;
   for (int sample = 0; sample < n_samples; ++sample) {
-    Control control(rule_with({10.0}), one_sensor, minute_s);
+    Control control(desk_rule({10.0}), one_sensor_alone, a_minute_s);
     for (int day = 0; day < n_days; ++day) {
       for (int i = 0; i < rows_a_day; ++i) {
-        Sample row = row_at(minute_s * (i + 1), moves(random), 1, day);
+        Sample row = row_at(a_minute_s * (i + 1), moves(random), 1, day);
         row.clock.clear();
         control.add(row);
       }

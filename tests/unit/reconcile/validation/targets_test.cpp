@@ -13,7 +13,7 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-InjectedCase injected(const std::string& truth, const std::string& taken_for, Verdict verdict) {
+InjectedCase injected_case(const std::string& truth, const std::string& taken_for, Verdict verdict) {
   InjectedCase c;
   c.kind = truth == "nothing" ? CaseKind::nothing : CaseKind::one;
   c.truth = truth;
@@ -29,7 +29,8 @@ SelftestResult result_of(std::size_t nulls, std::size_t alarms) {
   SelftestResult result;
   result.hypotheses = {"nothing", "soft_zone_edges", "fidgeting", "sensor_yaw"};
   for (std::size_t i = 0; i < nulls; ++i) {
-    result.cases.push_back(injected("nothing", "nothing", i < alarms ? Verdict::one_of : Verdict::no_disagreement));
+    result.cases.push_back(
+        injected_case("nothing", "nothing", i < alarms ? Verdict::one_of : Verdict::no_disagreement));
   }
   return result;
 }
@@ -61,7 +62,7 @@ TEST_CASE("a target is met only if the whole interval is within its bounds", "[s
 TEST_CASE("every target but those of known geometry has a rate that a full self-test counts", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   for (const CaseKind kind : {CaseKind::one, CaseKind::left_out, CaseKind::out_of_catalogue}) {
-    InjectedCase c = injected("sensor_yaw", "sensor_yaw", Verdict::named);
+    InjectedCase c = injected_case("sensor_yaw", "sensor_yaw", Verdict::named);
     c.kind = kind;
     c.n_parameters = c.n_covered = 1;
     c.verification.emplace().before.energy_score = 1.0;  // there is something to close
@@ -70,7 +71,7 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
   }
   const std::size_t first = result.cases.size();
   for (const CaseKind kind : {CaseKind::one, CaseKind::left_out_variant}) {
-    result.cases.push_back(injected("fidgeting", "fidgeting", Verdict::named));
+    result.cases.push_back(injected_case("fidgeting", "fidgeting", Verdict::named));
     result.cases.back().kind = kind;
     result.cases.back().injected = first;
   }
@@ -97,15 +98,15 @@ TEST_CASE("gaps that are closed are counted where the right name was applied and
     result.cases[i].verification->shrunk = i == 0;
   }
   for (const double share : {0.95, 0.5, 0.92, 0.91}) {
-    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));
     result.cases.back().verification.emplace();
     result.cases.back().verification->before.energy_score = 1.0;
     result.cases.back().verification->share_closed = share;
     result.cases.back().verification->shrunk = true;
     result.cases.back().verification->closed = share > 0.6;
   }
-  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
-  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
+  result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));
   result.cases.back().verification.emplace().n_trials = 3;  // shrunk by nothing: there was nothing to close
   const std::vector<Rate> rates = rates_of(result);
   const auto rate = [&](const std::string& what) {
@@ -123,13 +124,13 @@ TEST_CASE("gaps that are closed are counted where the right name was applied and
 TEST_CASE("names that were applied are counted by whose they are", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   const auto add = [&](CaseKind kind, double p) {
-    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));
     result.cases.back().kind = kind;
     result.cases.back().applied = Look{{"sensor_yaw"}, 0.025, p, {}};
   };
   for (const double p : {0.3, 0.03, 0.02}) add(CaseKind::one, p);
   for (const double p : {0.026, 0.025, 0.001, 0.002}) add(CaseKind::left_out, p);
-  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
   const std::vector<Rate> rates = rates_of(result);
   const auto rate = [&](const std::string& what) {
     return std::ranges::find(rates, what, [](const Rate& one) { return in_words(one.what); });
@@ -145,7 +146,7 @@ TEST_CASE("names that were applied are counted by whose they are", "[selftest]")
 TEST_CASE("what the catalogue is made to lack is counted by what it is called", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   const auto add = [&](CaseKind kind, Verdict verdict, const std::string& named, effects::Family family) {
-    result.cases.push_back(injected("fidgeting", named, verdict));
+    result.cases.push_back(injected_case("fidgeting", named, verdict));
     result.cases.back().kind = kind;
     result.cases.back().family = family;
   };
@@ -186,10 +187,10 @@ TEST_CASE("what the catalogue is made to lack is counted by what it is called", 
 TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   for (const auto family : {effects::Family::mounting, effects::Family::optics}) {
-    result.cases.push_back(injected("sensor_yaw", "sensor_tilt", Verdict::one_of));
+    result.cases.push_back(injected_case("sensor_yaw", "sensor_tilt", Verdict::one_of));
     result.cases.back().family = family;
   }
-  result.cases.push_back(injected("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
+  result.cases.push_back(injected_case("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
   const std::vector<Rate> rates = rates_of(result);
   const auto right = std::ranges::find(rates, Counted::right_family, &Rate::what);
   const auto wrong = std::ranges::find(rates, Counted::wrong_family, &Rate::what);
@@ -205,9 +206,10 @@ TEST_CASE("pairs that are taken for each other are listed with what the catalogu
   SelftestResult result = result_of(1, 0);
   for (int i = 0; i < 8; ++i) {
     const bool swapped = i < 3;
-    result.cases.push_back(injected("soft_zone_edges", swapped ? "fidgeting" : "soft_zone_edges", Verdict::one_of));
-    result.cases.push_back(injected("fidgeting", i < 1 ? "soft_zone_edges" : "fidgeting", Verdict::one_of));
-    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(
+        injected_case("soft_zone_edges", swapped ? "fidgeting" : "soft_zone_edges", Verdict::one_of));
+    result.cases.push_back(injected_case("fidgeting", i < 1 ? "soft_zone_edges" : "fidgeting", Verdict::one_of));
+    result.cases.push_back(injected_case("sensor_yaw", "sensor_yaw", Verdict::named));
   }
   const auto pairs = confused_pairs(result, 0.1);
   REQUIRE(pairs.size() == 1);
@@ -224,7 +226,7 @@ TEST_CASE("pairs that are taken for each other are listed with what the catalogu
 TEST_CASE("the pictures of a self-test hold its shares", "[selftest]") {
   SelftestResult result = result_of(4, 0);
   for (int i = 0; i < 4; ++i) {
-    result.cases.push_back(injected("fidgeting", i < 1 ? "sensor_yaw" : "fidgeting", Verdict::one_of));
+    result.cases.push_back(injected_case("fidgeting", i < 1 ? "sensor_yaw" : "fidgeting", Verdict::one_of));
   }
   const io::GridChart confusion = confusion_chart(result);
   CHECK(confusion.rows == result.hypotheses);
