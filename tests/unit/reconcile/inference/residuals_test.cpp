@@ -37,7 +37,7 @@ const ReferenceStudy& residual_study() {
 /// Eight trials, one after the other.
 const ReferenceStudy& session() {
   static const ReferenceStudy reference =
-      make_reference_study({}, test::short_study({"S1", "S2", "S3", "S4", "S6", "S7", "S8", "S9"}, 90.0));
+      make_reference_study({}, test::short_study({"S1", "S2", "S3", "S4", "S6", "S7", "S8", "S9"}, 60.0));
   return reference;
 }
 
@@ -108,13 +108,13 @@ TEST_CASE("what is left over tells from which trial on outputs are held longer, 
   const std::vector<Series> held = *one.with_effects(std::span(&hold, 1), 0, 1);
   Measured measured;
   measured.runs = one.plain(0, 1);
-  const Residuals nothing = explain_rest(session(), {}, measured, 0.05, {});
+  const Residuals nothing = explain_rest(session(), {}, measured, 0.1, {});
   INFO(sentence_of_rest(nothing));
   CHECK(nothing.drivers.empty());
   for (std::size_t i = 0; i < measured.runs.size(); ++i) {
     if (measured.runs[i].trial >= 4) measured.runs[i] = held[i];
   }
-  const Residuals found = explain_rest(session(), {}, measured, 0.05, {});
+  const Residuals found = explain_rest(session(), {}, measured, 0.1, {});
   INFO(sentence_of_rest(found));
   REQUIRE_FALSE(found.drivers.empty());
   const ResidualDriver& strongest = found.drivers.front();
@@ -125,7 +125,7 @@ TEST_CASE("what is left over tells from which trial on outputs are held longer, 
   // With that effect applied, motion has more gaps than expected up to there.
   FittedEffect applied;
   applied.effect = hold;
-  const Residuals beside = explain_rest(session(), std::span(&applied, 1), measured, 0.05, {});
+  const Residuals beside = explain_rest(session(), std::span(&applied, 1), measured, 0.1, {});
   INFO(sentence_of_rest(beside));
   CHECK(std::ranges::any_of(beside.drivers, [](const ResidualDriver& driver) {
     return driver.how == ResidualDriver::How::with_gaps && !driver.up;
