@@ -131,7 +131,7 @@ class Dataset(unittest.TestCase):
 
             # Nor does preview need anything else.
             pirsim("preview", "--scene", one / "rooms/room_0001.gltf", "--script", one / "scripts/room_0001/day_01.yaml",
-                   "--time", 600, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
+                   "--time", 300, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
                    pathlib.Path(folder) / "morning.png")
 
             # What is missing is told, and made again as it was.

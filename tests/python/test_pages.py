@@ -70,7 +70,8 @@ def test_those_of_the_page_on_python(source, data, room, study_a, recipe, folder
         shutil.copy(file, {room.name: "room.gltf"}.get(file.name, file.name))
     (folder / "recipe.yaml").write_text(recipe.read_text().replace("count: 1,", "count: 2,", 1))
     write_week(folder / "week.csv")
-    script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"]})
+    script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"],
+                                           "people.0.actions.3.work.duration_s": 60})
     pirsim.write_script(script, "study.yaml")
     script.effects = [pirsim.Effect("missed_triggers", {"probability": 0.6})]
     script.seed = 7

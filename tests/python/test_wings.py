@@ -24,7 +24,7 @@ def test_a_dataset_equals_the_command_lines(recipe, data, command, tmp_path):
     assert package["resources"]
     pirsim.dataset(recipe, tmp_path / "b", resume=True)  # nothing to do
     with pytest.raises(pirsim.InputError):
-        pirsim.dataset(data / "recipes" / "small_offices.yaml", tmp_path / "b")
+        pirsim.dataset(data / "recipes" / "tiny.yaml", tmp_path / "b")
     with pytest.raises(pirsim.InputError, match="holds another dataset"):
         pirsim.dataset(recipe, tmp_path / "b", set={"sensing.response": "zones"})
 
