@@ -1,6 +1,7 @@
 // Crowds with random scripts: nobody stays stuck, nobody walks through anybody uncounted, bodies move as bodies do.
 #include <glm/gtc/quaternion.hpp>
 #include <map>
+#include <utility>
 
 #include "support/body_checks.hpp"
 #include "support/catch.hpp"
