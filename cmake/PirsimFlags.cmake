@@ -31,17 +31,18 @@ function(pirsim_precompile target)
   endif()
 endfunction()
 
-# The files of a folder are compiled together, a dozen at a time: names in their anonymous namespaces mustn't clash.
-function(pirsim_unity target)
+# The files of a folder are compiled together, `most` at a time: names in their anonymous namespaces mustn't clash.
+function(pirsim_unity target most)
   if(NOT PIRSIM_UNITY_BUILD)
     return()
   endif()
   get_target_property(files ${target} SOURCES)
   foreach(file IN LISTS files)
     cmake_path(GET file PARENT_PATH at)
-    if(NOT at STREQUAL folder OR n EQUAL 12)
+    if(NOT at STREQUAL folder OR n EQUAL most)
       set(folder "${at}")
-      cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE first)
+      cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE first)
+      cmake_path(RELATIVE_PATH first BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
       string(MAKE_C_IDENTIFIER "${first}" group)
       set(n 0)
     endif()
@@ -50,6 +51,14 @@ function(pirsim_unity target)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
+
+# Tests are many programs: mold links each in a moment, where it is installed.
+if(PROJECT_IS_TOP_LEVEL AND PIRSIM_BUILD_TESTS AND NOT "${CMAKE_EXE_LINKER_FLAGS}" MATCHES "-fuse-ld")
+  find_program(PIRSIM_MOLD mold)
+  if(PIRSIM_MOLD)
+    add_link_options(-fuse-ld=mold)
+  endif()
+endif()
 
 # What compiled before, here or in another clone, is taken from ccache where that is installed.
 if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

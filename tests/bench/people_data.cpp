@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   for (const Activity activity : {Activity::typing, Activity::reading, Activity::meeting, Activity::phone}) {
     for (int person = 0; person < n_people; ++person) {
       Sitter sitter(static_cast<std::uint32_t>(person), man, desk_seat());
-      Observer observer;
+      SitterObserver observer;
       for (int tick = 0; tick < 3600 * tick_rate_hz; ++tick) {
         sitter.tick(activity);
         observer.see(sitter.motion);

@@ -30,18 +30,17 @@ pkg-config --static --libs pirsim-reconcile | grep -q -- '-lpirsim_reconcile.*-l
 
 data="$scratch/prefix/share/pirsim"
 scene="$data/rooms/meeting_room.gltf" script="$data/studies/studyA.yaml"
-"$scratch/build/main" "$scene" "$script" >"$scratch/a.csv"
+"$scratch/own/build/own" "$scene" "$script" >"$scratch/a.csv"
 "$scratch/by_pkg_config" "$scene" "$script" >"$scratch/b.csv"
 "$scratch/prefix/bin/pirsim" --scene "$scene" --script "$script" --replicates 1 -q |
   awk -F, 'NR == 1 || $2 == "S8"' >"$scratch/c.csv"
-"$scratch/own/build/own" "$scene" "$script" | cmp - "$scratch/a.csv"
 cmp "$scratch/a.csv" "$scratch/b.csv"
 cmp "$scratch/a.csv" "$scratch/c.csv"
 # An installation that is moved, and a room far from any folder of sensors: the library carries the shipped ones.
 mkdir "$scratch/alone" "$scratch/moved" && cp "$scene" "$script" "$scratch/alone"
 cp "$scratch/prefix/bin/pirsim" "$scratch/moved"
 mv "$data" "$scratch/hidden_data"
-(cd "$scratch/alone" && "$scratch/build/main" meeting_room.gltf studyA.yaml | cmp - "$scratch/a.csv" &&
+(cd "$scratch/alone" && "$scratch/own/build/own" meeting_room.gltf studyA.yaml | cmp - "$scratch/a.csv" &&
   "$scratch/moved/pirsim" --scene meeting_room.gltf --script studyA.yaml --replicates 1 -q |
   awk -F, 'NR == 1 || $2 == "S8"' | cmp - "$scratch/c.csv")
 mv "$scratch/hidden_data" "$data"
@@ -64,7 +63,7 @@ awk 'NR == 2 { exit !($1 > 0 && $2 > 0) }' "$scratch/own_survey.txt"
 # What is missing: of the wing for measured data, the simulator's own library holds nothing.
 library=$(find "$scratch/prefix" -name libpirsim.a) wing=$(find "$scratch/prefix" -name libpirsim_reconcile.a)
 symbols() { nm -C "$1" 2>/dev/null | grep -c ' [TWBDRV] .*pirsim::\(reconcile\|stats\)::' || true; }
-[ "$(symbols "$library")" -eq 0 ] && [ "$(symbols "$scratch/build/main")" -eq 0 ] && [ "$(symbols "$wing")" -gt 100 ]
+[ "$(symbols "$library")" -eq 0 ] && [ "$(symbols "$scratch/own/build/own")" -eq 0 ] && [ "$(symbols "$wing")" -gt 100 ]
 short=(--set 'trials.for_each.seat=[S4]' --set people.0.actions.3.work.duration_s=30 --set replicates=1)
 "$scratch/prefix/bin/pirsim" --scene "$scene" --script "$script" "${short[@]}" --print-config >"$data/studies/short.yaml"
 "$scratch/prefix/bin/pirsim" --scene "$scene" --script "$data/studies/short.yaml" -q --seed 5 \

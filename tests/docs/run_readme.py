@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Types the README's section "Build it" in one shell, from tools/demo to the rows. The demo is the real one, but what it
-would install and build is there already: PIRSIM stands in build/release, and cmake, tools/install_deps and tools/check
+would install and build is there already: PIRSIM stands in build/dev, and cmake, tools/install_deps and tools/check
 do nothing.
 
 Usage: run_readme.py PIRSIM SOURCE_DIRECTORY
@@ -32,8 +32,8 @@ def clone(folder, pirsim, source):
     for name in ("install_deps", "check"):
         script(folder / "tools" / name, DOES_NOTHING)
     (folder / "data").symlink_to(source / "data")
-    (folder / "build/release").mkdir(parents=True)
-    (folder / "build/release/pirsim").symlink_to(pirsim)
+    (folder / "build/dev").mkdir(parents=True)
+    (folder / "build/dev/pirsim").symlink_to(pirsim)
 
 
 def main():
@@ -56,7 +56,7 @@ def main():
         assert len(told) >= 5, done.stdout
         for file in told:
             assert (folder / file).stat().st_size > 0, f"tools/demo names {file}, which isn't there"
-        assert f'export PATH="{folder}/build/release:$PATH"' in done.stdout, "the demo tells another path than the README"
+        assert f'export PATH="{folder}/build/dev:$PATH"' in done.stdout, "the demo tells another path than the README"
     print(f"the README's first commands: {len(told)} files of tools/demo, and the rows")
 
 

@@ -16,6 +16,7 @@ import time
 import unittest
 
 PIRSIM = DATA = TOOLS = None
+SHORT = pathlib.Path(__file__).resolve().parents[1] / "support/short_recipe.yaml"
 
 
 def pirsim(*args, code=0):
@@ -89,7 +90,7 @@ class Home(unittest.TestCase):
 
 class Dataset(unittest.TestCase):
     def test_more_people_than_seats_are_told_once(self):
-        recipe = (DATA / "recipes" / "tiny.yaml").read_text()
+        recipe = SHORT.read_text()
         self.assertIn("people: [1, 2]", recipe)
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "many.yaml"
@@ -99,12 +100,12 @@ class Dataset(unittest.TestCase):
                 self.assertEqual(said.count("should have 7 at least, but has only "), told, said)
 
     def test_shards_make_what_one_process_makes(self):
-        recipe = DATA / "recipes" / "tiny.yaml"
+        recipe = SHORT
         with tempfile.TemporaryDirectory() as folder:
             one, other = pathlib.Path(folder) / "one", pathlib.Path(folder) / "other"
             pirsim("dataset", recipe, "-o", one)
-            self.assertIn("4 of 8", pirsim("dataset", recipe, "-o", other, "--shard", "2/2").stderr)
-            self.assertIn("4 of 8", pirsim("dataset", recipe, "-o", other, "--finish", code=3).stderr)
+            self.assertIn("2 of 4", pirsim("dataset", recipe, "-o", other, "--shard", "2/2").stderr)
+            self.assertIn("2 of 4", pirsim("dataset", recipe, "-o", other, "--finish", code=3).stderr)
             self.assertIn("--finish", pirsim("dataset", recipe, "-o", other, "--shard", "1/2").stderr)
             pirsim("dataset", recipe, "-o", other, "--finish")
             self.assertEqual(differing(one, other), [])
@@ -136,7 +137,7 @@ class Dataset(unittest.TestCase):
 
             # Nor does preview need anything else.
             pirsim("preview", "--scene", one / "rooms/room_0001.gltf", "--script", one / "scripts/room_0001/day_01.yaml",
-                   "--time", 600, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
+                   "--time", 300, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
                    pathlib.Path(folder) / "morning.png")
 
             # What is missing is told, and made again as it was.
@@ -159,17 +160,17 @@ class Dataset(unittest.TestCase):
 
     def made(self, folder):
         """A dataset whose days are made and that isn't described yet."""
-        pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--shard", "1/1", "-q")
+        pirsim("dataset", SHORT, "-o", folder, "--shard", "1/1", "-q")
 
     def test_a_recipe_of_which_something_is_changed_is_another_one(self):
-        recipe = DATA / "recipes" / "tiny.yaml"
+        recipe = SHORT
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
-            pirsim("dataset", recipe, "-o", out, "--response", "zones", "--shard", "1/8", "-q")
+            pirsim("dataset", recipe, "-o", out, "--response", "zones", "--shard", "1/4", "-q")
             self.assertTrue((out / "recipe.yaml").read_text().endswith("\n# --set sensing.response=zones\n"))
             self.assertIn("response: zones", (out / "scripts/room_0001/day_01.yaml").read_text())
-            self.assertIn("holds another dataset", pirsim("dataset", recipe, "-o", out, "--shard", "2/8", code=3).stderr)
-            pirsim("dataset", recipe, "-o", out, "--set", "sensing.response=zones", "--shard", "2/8", "-q")
+            self.assertIn("holds another dataset", pirsim("dataset", recipe, "-o", out, "--shard", "2/4", code=3).stderr)
+            pirsim("dataset", recipe, "-o", out, "--set", "sensing.response=zones", "--shard", "2/4", "-q")
 
     def test_a_room_that_was_edited_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -186,12 +187,12 @@ class Dataset(unittest.TestCase):
             file.write_text(json.dumps(scene, separators=(",", ":")).ljust(len(as_made)))
             self.assertEqual(file.stat().st_size, len(as_made))
             for how in ("--resume", "--finish"):
-                told = pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, how, "-q", code=3).stderr
+                told = pirsim("dataset", SHORT, "-o", folder, how, "-q", code=3).stderr
                 self.assertIn("room_0001.gltf: error: ", told)
                 self.assertIn("move it away", told)
             self.assertFalse((folder / "datapackage.json").exists())
             file.write_bytes(as_made)
-            pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--finish", "-q")
+            pirsim("dataset", SHORT, "-o", folder, "--finish", "-q")
 
     def test_an_altered_bit_of_rows_is_made_again(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -202,15 +203,15 @@ class Dataset(unittest.TestCase):
             altered = bytearray(as_made)
             altered[len(altered) // 2] ^= 1
             file.write_bytes(altered)
-            told = pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--finish", "-q", code=3).stderr
+            told = pirsim("dataset", SHORT, "-o", folder, "--finish", "-q", code=3).stderr
             self.assertIn("day_02.csv.gz: error: isn't what was written", told)
-            pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--resume", "-q")
+            pirsim("dataset", SHORT, "-o", folder, "--resume", "-q")
             self.assertEqual(file.read_bytes(), as_made)
 
     def test_a_second_process_is_refused_in_words(self):
         with tempfile.TemporaryDirectory() as folder:
-            for i in range(6):
-                command = [PIRSIM, "dataset", DATA / "recipes" / "tiny.yaml", "-o", pathlib.Path(folder) / str(i), "--shard",
+            for i in range(4):
+                command = [PIRSIM, "dataset", SHORT, "-o", pathlib.Path(folder) / str(i), "--shard",
                            "1/2", "--resume", "-q"]
                 both = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(2)]
                 ends = [(process.communicate(timeout=300)[1], process.returncode) for process in both]
@@ -221,7 +222,7 @@ class Dataset(unittest.TestCase):
                 self.assertEqual(list(pathlib.Path(folder).rglob("*.lock")) + list(pathlib.Path(folder).rglob("*writing*")), [])
 
     def test_a_signal_in_the_last_phase_is_one_of_any_phase(self):
-        recipe = (DATA / "recipes" / "tiny.yaml").read_text().replace("count: 3,", "count: 20,")
+        recipe = SHORT.read_text().replace("count: 1,", "count: 8,", 1)
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             (folder / "many.yaml").write_text(recipe)
@@ -259,32 +260,31 @@ class Dataset(unittest.TestCase):
             fault = pirsim("dataset", folder / "recipe.yaml", "-o", folder / "out", code=3).stderr
             self.assertIn("did you mean 'EKMC1604111'?", fault)
             self.assertFalse((folder / "out").exists())
-            tiny = (DATA / "recipes/tiny.yaml").read_text()
+            short = SHORT.read_text()
             for change, code, told in (
-                    (("count: 3,", "count: 3, sensors: [{mount: corner, model: EKMC1601119}],"), 3, "did you mean"),
+                    (("count: 1,", "count: 1, sensors: [{mount: corner, model: EKMC1601119}],"), 3, "did you mean"),
                     (("seats: [1, 2]", "seats: 30"), 5, "none of"),
                     (("effects:", "effects:\n  - {dead_sensor: {sensor: PIR9}, per: room}"), 3, "PIR9")):
-                self.assertIn(change[0], tiny)
-                (folder / "recipe.yaml").write_text(tiny.replace(*change, 1))
+                self.assertIn(change[0], short)
+                (folder / "recipe.yaml").write_text(short.replace(*change, 1))
                 self.assertIn(told, pirsim("dataset", folder / "recipe.yaml", "-o", folder / "out", code=code).stderr)
                 self.assertFalse((folder / "out").exists(), change)
 
     def test_what_lies_in_a_folder_is_not_replaced(self):
-        tiny = (DATA / "recipes/tiny.yaml").read_text()
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            (folder / "recipe.yaml").write_text(tiny)
+            shutil.copy(SHORT, folder / "recipe.yaml")
             for mine in ("README.md", "rooms.csv"):
                 (folder / mine).write_text("mine")
-                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", code=3).stderr
+                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/4", code=3).stderr
                 self.assertIn(f"{mine}: error: is there already, and of no dataset", told)
                 self.assertEqual((folder / mine).read_text(), "mine")
                 (folder / mine).unlink()
-            pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", "-q")  # beside its recipe
+            pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/4", "-q")  # beside its recipe
             room = folder / "rooms/room_0001.gltf"
             room.write_bytes(room.read_bytes() + b"\n")
             for more in ((), ("--resume",)):
-                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", *more, code=3).stderr
+                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/4", *more, code=3).stderr
                 self.assertIn("room_0001.gltf: error: isn't what this recipe makes", told)
 
 

@@ -280,7 +280,7 @@ class Options(unittest.TestCase):
 
 
 class Days(unittest.TestCase):
-    OFFICE = "--scene", None, "--staff", 8, "--from", "09:00", "--to", "09:05", "-q"
+    OFFICE = "--scene", None, "--staff", 8, "--from", "09:00", "--to", "09:05", "--set", "sensing.tick_rate_hz=10", "-q"
 
     def day(self, *args, **kwargs):
         scene = DATA / "rooms" / "open_office.gltf"
@@ -369,6 +369,13 @@ class Days(unittest.TestCase):
 
 
 class Light(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.two_rooms = pathlib.Path(folder.name) / "rows.csv"
+        study("-q", "--replicates", 1, "-o", cls.two_rooms, scene="two_rooms.gltf", script="two_rooms.yaml")
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -378,12 +385,11 @@ class Light(unittest.TestCase):
         return rows((self.folder / name).read_text())
 
     def test_areas_have_lights_of_their_own_whose_times_add_up(self):
-        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
-        told = pirsim("control", self.folder / "rows.csv", "--scene", DATA / "rooms" / "two_rooms.gltf", "--delay", 1, 5,
+        told = pirsim("control", self.two_rooms, "--scene", DATA / "rooms" / "two_rooms.gltf", "--delay", 1, 5,
                       "-o", self.folder / "costs.csv", "--light", self.folder / "lit.csv", "--report",
                       self.folder / "light.html")
         self.assertIn("With a delay of 1 min, a light goes off on somebody", told.stdout)
-        costs, lit, given = self.table("costs.csv"), self.table("lit.csv"), self.table("rows.csv")
+        costs, lit, given = self.table("costs.csv"), self.table("lit.csv"), rows(self.two_rooms.read_text())
         self.assertEqual({row["light"] for row in costs}, {"living_room", "bedroom"})
         self.assertEqual(len(lit), len(given))
         for light in ("living_room", "bedroom"):
@@ -399,11 +405,10 @@ class Light(unittest.TestCase):
         self.assertIn("living_room", (self.folder / "light.html").read_text())
 
     def test_a_rule_that_names_areas_alone_takes_the_sensors_that_watch_them(self):
-        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
         rule = write(self.folder, "rule.yaml", "pirsim_control: 1\nlights: [{area: living_room}, {area: bedroom}]\n")
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf"
         by_all, by_own, plain = (
-            pirsim("control", self.folder / "rows.csv", *more, "-o", self.folder / "costs.csv").stderr + (self.folder / "costs.csv").read_text()
+            pirsim("control", self.two_rooms, *more, "-o", self.folder / "costs.csv").stderr + (self.folder / "costs.csv").read_text()
             for more in (("--rule", rule), ("--rule", rule, *made_by), made_by))
         self.assertEqual(by_own, plain)
         self.assertNotIn("warning", by_own)
@@ -411,14 +416,13 @@ class Light(unittest.TestCase):
         self.assertNotEqual(by_all.split("light,delay_min")[1], plain.split("light,delay_min")[1])
 
     def test_seats_that_no_sensor_notices_are_told(self):
-        study("-q", "--replicates", 1, "-o", self.folder / "rows.csv", scene="two_rooms.gltf", script="two_rooms.yaml")
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf", "--script", DATA / "studies" / "two_rooms.yaml"
-        deaf = pirsim("control", self.folder / "rows.csv", *made_by)
+        deaf = pirsim("control", self.two_rooms, *made_by)
         told = "light 'living_room': none of its sensors notices somebody at work in S1: who is alone there sits in the dark"
         seen = pirsim("check", *made_by).stdout
         self.assertEqual(told in deaf.stderr, "noticed in none" in seen, deaf.stderr + seen)
         self.assertNotIn("'bedroom'", deaf.stderr)
-        self.assertNotIn("notices somebody", pirsim("control", self.folder / "rows.csv", *made_by[:2]).stderr)
+        self.assertNotIn("notices somebody", pirsim("control", self.two_rooms, *made_by[:2]).stderr)
 
     def test_a_dataset_and_a_log_have_days(self):
         for room in (1, 2):
@@ -515,7 +519,8 @@ class Homes(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             flat, script = self.day_of_two(folder)
             out = pathlib.Path(folder)
-            pirsim("--scene", flat, "--script", script, "-q", "-o", out / "rows.csv", "--casas", out / "log.txt")
+            pirsim("--scene", flat, "--script", script, "--replicates", 1, "-q", "-o", out / "rows.csv", "--casas",
+                   out / "log.txt")
             rose = {}
             before = {}
             for row in rows((out / "rows.csv").read_text()):
@@ -931,12 +936,13 @@ class Looking(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "rows.csv"
             report = pathlib.Path(folder) / "report.html"
-            told = study("-o", out, "--report", report).stderr
+            once = "--replicates", 1
+            told = study(*once, "-o", out, "--report", report).stderr
             n_rows = len(out.read_text().splitlines()) - 1
             self.assertIn(f"wrote {out}: {n_rows} rows, {report}\n", told)
-            self.assertNotIn("wrote", study("-o", out, "-q").stderr)
-            self.assertNotIn("wrote", study().stderr)
-            self.assertIn("all runs are there", study("-o", out, "--resume").stderr)
+            self.assertNotIn("wrote", study(*once, "-o", out, "-q").stderr)
+            self.assertNotIn("wrote", study(*once).stderr)
+            self.assertIn("all runs are there", study(*once, "-o", out, "--resume").stderr)
 
     def test_preview_marks_what_it_is_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:

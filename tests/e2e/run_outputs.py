@@ -268,11 +268,11 @@ class Contents(Case):
     def test_folders_get_what_is_listed_here(self):
         room, coarse = "meeting_room.gltf", ("--set", "spacing_m=2", "--set", "duration_s=2")
         study = "--scene", room, "--script", "studyA.yaml", "--set", "trials.for_each.seat=[S8]"
-        (self.folder / "tiny.yaml").write_text((DATA / "recipes/tiny.yaml").read_text())
+        shutil.copy(pathlib.Path(__file__).resolve().parents[1] / "support/short_recipe.yaml", self.folder)
         for folder, args, tries in (
                 ("maps", ("coverage", "--scene", room, "--script", "studyB.yaml", *coarse, "-o"), ("--marks",)),
                 ("shards", ("run", *study, "--shard", "1/1", "-o"), ("--marks",)),
-                ("data", ("dataset", "tiny.yaml", "-o"), ())):
+                ("data", ("dataset", "short_recipe.yaml", "-o"), ())):
             done = pirsim(*args, folder, cwd=self.folder)
             self.assertEqual(done.returncode, 0, done.stderr)
             files = [file for file in self.contents() if file.startswith(f"{folder}/")]

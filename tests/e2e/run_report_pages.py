@@ -82,7 +82,7 @@ def main():
         folder = pathlib.Path(name)
         scene = ["-q", "--scene", str(data / "rooms/meeting_room.gltf")]
         subprocess.run([pirsim, "coverage", *scene, "--script", str(data / "studies/studyB.yaml"), "--set",
-                        "spacing_m=0.1", "-o", str(folder / "maps"), "--report", str(folder / "maps.html")], check=True)
+                        "spacing_m=0.2", "-o", str(folder / "maps"), "--report", str(folder / "maps.html")], check=True)
         check_page(chromium, folder / "maps.html", 6, folder, least_names=6 * 8)
         write_long_office(folder / "long.gltf")
         subprocess.run([pirsim, "coverage", "-q", "--scene", str(folder / "long.gltf"), "--script",

@@ -7,6 +7,8 @@ import subprocess
 
 import pytest
 
+import pirsim
+
 SOURCE = pathlib.Path(os.environ.get("PIRSIM_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 
 
@@ -31,6 +33,20 @@ def study_a(data):
 
 
 @pytest.fixture(scope="session")
+def recipe():
+    """The least that has all of a dataset, in two seconds."""
+    return SOURCE / "tests" / "support" / "short_recipe.yaml"
+
+
+@pytest.fixture(scope="session")
+def dataset(data, tmp_path_factory):
+    """With all four parts, made once for all who only read it."""
+    folder = tmp_path_factory.mktemp("datasets") / "tiny"
+    pirsim.dataset(data / "recipes" / "tiny.yaml", folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
 def command():
     """Calls the command line; returns what it printed."""
 
@@ -40,6 +56,10 @@ def command():
         return done.stdout
 
     return call
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: only tools/check --all runs it")
 
 
 def pytest_collection_modifyitems(config, items):

@@ -66,8 +66,8 @@ def test_logistic_is_scikit_learns(days, tmp_path):
 
 def test_live_counts_and_unknown_readings(days):
     pytest.importorskip("sklearn")
-    motion = days[0].motion[:150].copy()
-    motion[40:90] = 2
+    motion = days[0].motion[:45].copy()
+    motion[10:35] = 2
     for model in ("logistic", "trees"):
         counter = counting.train(days, model=model)
         estimates, live = counter.estimate(motion), counter.live()
@@ -75,8 +75,8 @@ def test_live_counts_and_unknown_readings(days):
             np.testing.assert_allclose(live.next(bits), estimates.probabilities[i], atol=1e-12)
             assert live.people == (estimates.people[i] if estimates.people[i] >= 0 else None)
         # Ten readings are five minutes: from then on nobody knows.
-        assert np.isnan(estimates.probabilities[50:90]).all() and (estimates.people[50:90] == -1).all()
-        assert not np.isnan(estimates.probabilities[:50]).any() and not np.isnan(estimates.probabilities[90:]).any()
+        assert np.isnan(estimates.probabilities[20:35]).all() and (estimates.people[20:35] == -1).all()
+        assert not np.isnan(estimates.probabilities[:20]).any() and not np.isnan(estimates.probabilities[35:]).any()
         assert np.array_equal(counter.estimate(np.where(motion == 2, np.nan, motion.astype(float))).people,
                               estimates.people)
 

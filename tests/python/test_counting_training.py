@@ -112,13 +112,6 @@ def test_what_cant_be_learnt_from_is_refused():
 
 # -- datasets --------------------------------------------------------------------------------------------------------
 
-@pytest.fixture(scope="module")
-def dataset(data, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("data") / "tiny"
-    pirsim.dataset(data / "recipes" / "tiny.yaml", folder)
-    return folder
-
-
 def rows_of(file):
     with gzip.open(file, "rt", newline="") as text:
         return list(csv.DictReader(text))

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import signal
 
 import pytest
@@ -86,9 +87,8 @@ def test_rows_of_another_study_are_refused_and_never_returned(client, program, r
     assert script.read_text() == study_a.read_text()
 
 
-def test_a_folder_of_another_dataset_is_refused(client, program, data, tmp_path):
-    recipe = tmp_path / "recipe.yaml"
-    recipe.write_text((data / "recipes" / "tiny.yaml").read_text())
+def test_a_folder_of_another_dataset_is_refused(client, program, recipe, data, tmp_path):
+    recipe = shutil.copy(recipe, tmp_path / "recipe.yaml")
 
     def run(folder):
         pirsim.dask.run_dataset(client, recipe, tmp_path / folder, shards=2, sensors=[data / "sensors"], command=program)
@@ -105,8 +105,7 @@ def test_a_folder_of_another_dataset_is_refused(client, program, data, tmp_path)
     assert files_of(tmp_path) == before
 
 
-def test_a_dataset_has_the_files_of_one_process(client, command, program, data, tmp_path):
-    recipe = data / "recipes" / "tiny.yaml"
+def test_a_dataset_has_the_files_of_one_process(client, command, program, recipe, data, tmp_path):
     command("dataset", recipe, "-o", tmp_path / "one", "--sensors", data / "sensors", "-q")
     pirsim.dask.run_dataset(client, recipe, tmp_path / "many", shards=4, sensors=[data / "sensors"],
                             command=program)

@@ -72,6 +72,7 @@ def test_the_command_is_the_program_in_the_package():
     assert subprocess.run([sys.executable, "-m", "pirsim", "help", "nothing"], capture_output=True).returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy isn't installed")
 def test_types_are_right(source, tmp_path):
     program = tmp_path / "typed.py"
@@ -106,6 +107,7 @@ def test_examples_draw_what_they_say(example, source, tmp_path, monkeypatch):
     assert len(pictures) == 1 and pictures[0].stat().st_size > 10_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("notebook, says", [("room_to_counter", "mean absolute error"),
                                             ("measurements_to_verdict", "seconds with motion")])
 def test_notebooks_run(notebook, says, source, capsys, monkeypatch):

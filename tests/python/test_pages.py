@@ -61,16 +61,17 @@ def write_week(file):
     file.write_text("\n".join(lines) + "\n")
 
 
-def test_those_of_the_page_on_python(source, data, room, study_a, folder):
+def test_those_of_the_page_on_python(source, data, room, study_a, recipe, folder):
     """In order, with the files that the page speaks of, and with measurements in which an effect is hidden."""
     pytest.importorskip("matplotlib").use("Agg")
     for library in ("pandas", "polars", "xarray"):
         pytest.importorskip(library)
-    for file in (room, data / "studies/studyB.yaml", data / "studies/walk_test.yaml", data / "studies/placements.yaml",
-                 data / "recipes/tiny.yaml"):
-        shutil.copy(file, {room.name: "room.gltf", "tiny.yaml": "recipe.yaml"}.get(file.name, file.name))
+    for file in (room, data / "studies/studyB.yaml", data / "studies/walk_test.yaml", data / "studies/placements.yaml"):
+        shutil.copy(file, {room.name: "room.gltf"}.get(file.name, file.name))
+    (folder / "recipe.yaml").write_text(recipe.read_text().replace("count: 1,", "count: 2,", 1))
     write_week(folder / "week.csv")
-    script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"]})
+    script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"],
+                                           "people.0.actions.3.work.duration_s": 60})
     pirsim.write_script(script, "study.yaml")
     script.effects = [pirsim.Effect("missed_triggers", {"probability": 0.6})]
     script.seed = 7
@@ -112,9 +113,9 @@ def test_the_room_with_walls_of_the_page_on_python(source):
     assert "walls" in pirsim.check(scene, script).warnings[0].text
 
 
-def test_those_of_the_page_on_datasets(source, data, folder):
+def test_those_of_the_page_on_datasets(source, dataset, folder):
     pytest.importorskip("pandas")
-    pirsim.dataset(data / "recipes" / "tiny.yaml", "small_offices")
+    (folder / "small_offices").symlink_to(dataset)
     names = {}
     for block in blocks_of(source / "docs/howto/dataset.md"):
         exec(block, names)

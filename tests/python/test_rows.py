@@ -73,7 +73,8 @@ def cases(tmp_path_factory, data):
                    {"replicates": 1, "sensing.response": "analog", "trials.for_each.seat": ["S1"]}),
         "days": (rooms / "open_office.gltf", schedule, {}),
         "areas": (rooms / "two_rooms.gltf", studies / "two_rooms.yaml", {"sensing.response": "zones"}),
-        "home": (rooms / "flat.gltf", studies / "flat_week.yaml", {"replicates": 1, "sensing.response": "zones"}),
+        "home": (rooms / "flat.gltf", studies / "flat_week.yaml",
+                 {"replicates": 1, "sensing.response": "zones", "sensing.tick_rate_hz": 2}),
     }
 
 

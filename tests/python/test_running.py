@@ -22,9 +22,9 @@ def model(room, study_a):
 
 
 def test_two_threads_run_two_models_at_once(room, study_a, data):
-    models = [pirsim.compile(room, study_a, set={"replicates": 20}),
+    models = [pirsim.compile(room, study_a, set={"replicates": 2}),
               pirsim.compile(data / "rooms" / "open_office.gltf", data / "studies" / "office.yaml",
-                             set={"replicates": 40})]
+                             set={"replicates": 4})]
     alone = [pirsim.run(model) for model in models]
     both_run = threading.Barrier(2, timeout=60)  # is broken if one is never told while the other one runs
     results = [None, None]
@@ -139,6 +139,7 @@ def growth(model, n, keep):
     return [after - b for after, b in zip(bytes_in_use(), before)]
 
 
+@pytest.mark.slow
 def test_many_results_take_no_memory(room, study_a):
     model = pirsim.compile(room, study_a, set={"people.0.actions.3.work.duration_s": 5, "replicates": 1})
     n = 200

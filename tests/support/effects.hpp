@@ -26,6 +26,12 @@ inline ScriptSpec with(ScriptSpec script, std::vector<EffectSpec> effects) {
   return script;
 }
 
+/// As a script may have it: without what is usual.
+inline EffectSpec bare_effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
+                              std::map<std::string, std::string, std::less<>> choices = {}) {
+  return {name, std::move(parameters), std::move(choices), {}};
+}
+
 /// Every strength at an end of its prior, the lower if there are two, details as usual.
 inline EffectSpec strong(const effects::Effect& effect) {
   EffectSpec spec{effect.info.name, {}, {}, {}};

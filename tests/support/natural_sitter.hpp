@@ -30,7 +30,7 @@ inline bool differ(const std::array<double, 14>& a, const std::array<double, 14>
 }
 
 /// An observer who sees joints and nothing else.
-class Observer {
+class SitterObserver {
  public:
   void see(const Motion& motion) {
     const auto now = joints(motion);

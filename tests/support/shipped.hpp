@@ -15,6 +15,8 @@ namespace pirsim::test {
 inline std::filesystem::path data(const std::string& file) { return data_dir() / file; }
 inline SceneSpec shipped_scene(const std::string& file) { return io::read_scene(data("rooms/" + file)); }
 inline io::SceneOptions shipped_sensors() { return {{data("sensors")}, {}}; }
+/// That of a wall.
+inline SensorModelSpec wall_lens() { return io::read_sensor_model(data("sensors/EKMC1604111.yaml")); }
 inline ScriptSpec shipped_script(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return io::read_script(data("studies/" + file), overrides);
 }

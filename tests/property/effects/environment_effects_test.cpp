@@ -18,15 +18,11 @@ using body::test::desk_seat, body::test::man;
 
 namespace {
 
-EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters) {
-  return {name, std::move(parameters), {}, {}};
-}
-
 /// Triggers of every sensor in `seconds` after a seat was left, summed over runs.
 std::vector<double> after_leaving(const Model& model, std::size_t seat, double rate_per_s, double decay_s, int runs,
                                   int seconds) {
-  effects::Pipeline pipeline =
-      sim::make_stages(model, std::vector{effect("warm_chair", {{"rate_per_s", rate_per_s}, {"decay_s", decay_s}})});
+  effects::Pipeline pipeline = sim::make_stages(
+      model, std::vector{bare_effect("warm_chair", {{"rate_per_s", rate_per_s}, {"decay_s", decay_s}})});
   std::vector<double> counts(model.scene().sensors.size(), 0.0);
   for (int run = 0; run < runs; ++run) {
     pipeline.begin_run(1, static_cast<std::uint32_t>(run));
@@ -67,7 +63,7 @@ TEST_CASE("who fidgets moves at the given rate within the given angles and who d
   const double rate = 0.1, minutes = 60;
   ScriptSpec script = script_of(
       {person("anna", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Wait{60.0 * minutes})})});
-  script.effects = {effect("fidgeting", {{"rate_per_s", rate}, {"tilt_deg", 5.0}, {"turn_deg", 30.0}})};
+  script.effects = {bare_effect("fidgeting", {{"rate_per_s", rate}, {"tilt_deg", 5.0}, {"turn_deg", 30.0}})};
   const Model model = compile(shipped_scene("meeting_room.gltf"), script);
   State state(model, 0);
   body::Outline last;
@@ -152,8 +148,8 @@ TEST_CASE("a burst is under way when a run begins as often as at any other time"
   const Model model = compile(shipped_scene("meeting_room.gltf"), short_study_a());
   const double rate_per_s = 2.0, length_s = 12.0, period_s = 60.0;
   effects::Pipeline pipeline = sim::make_stages(
-      model, std::vector{effect("trigger_bursts",
-                                {{"length_s", length_s}, {"period_s", period_s}, {"rate_per_s", rate_per_s}})});
+      model, std::vector{bare_effect("trigger_bursts",
+                                     {{"length_s", length_s}, {"period_s", period_s}, {"rate_per_s", rate_per_s}})});
   constexpr int runs = 600, parts = 10;
   std::array<double, parts> with_triggers{};  // runs of which the first sensor is triggered in that tenth of a period
   for (int run = 0; run < runs; ++run) {

@@ -15,10 +15,6 @@ using namespace pirsim::test;
 
 namespace {
 
-EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
-                  std::map<std::string, std::string, std::less<>> choices = {}) {
-  return {name, std::move(parameters), std::move(choices), {}};
-}
 Model meeting_room(std::vector<EffectSpec> effects, int replicates = 1) {
   return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(replicates), std::move(effects)));
 }
@@ -47,7 +43,7 @@ std::size_t rays_of(const RayBundle& rays, std::size_t sensor) {
 
 TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one sensor and no other") {
   const Model plain = meeting_room({}),
-              yawed = meeting_room({effect("sensor_yaw", {{"yaw_deg", 5.0}}, {{"sensor", "PIR2"}})});
+              yawed = meeting_room({bare_effect("sensor_yaw", {{"yaw_deg", 5.0}}, {{"sensor", "PIR2"}})});
   const std::size_t begin = rays_of(plain.compiled().array().rated(), 1),
                     end = rays_of(plain.compiled().array().rated(), 2);
   const double c = std::cos(radians(5.0)), s = std::sin(radians(5.0));
@@ -62,8 +58,8 @@ TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one s
 }
 
 TEST_CASE("a tilted sensor looks so much further down and a lowered one looks from so much lower") {
-  const Model plain = meeting_room({}), tilted = meeting_room({effect("sensor_tilt", {{"tilt_deg", 4.0}})}),
-              lowered = meeting_room({effect("sensor_height", {{"height_m", -0.2}})});
+  const Model plain = meeting_room({}), tilted = meeting_room({bare_effect("sensor_tilt", {{"tilt_deg", 4.0}})}),
+              lowered = meeting_room({bare_effect("sensor_height", {{"height_m", -0.2}})});
   for (std::size_t i = 0; i < plain.scene().sensors.size(); ++i) {
     const auto down_deg = [&](const Model& model) {
       return degrees(std::asin(-model.compiled().scene().sensors[i].world_from_sensor.forward().y));
@@ -77,14 +73,16 @@ TEST_CASE("a tilted sensor looks so much further down and a lowered one looks fr
 }
 
 TEST_CASE("no sensor is raised into the ceiling, whose underside is 1 cm above it") {
-  const auto raised = [](double height_m) { return meeting_room({effect("sensor_height", {{"height_m", height_m}})}); };
+  const auto raised = [](double height_m) {
+    return meeting_room({bare_effect("sensor_height", {{"height_m", height_m}})});
+  };
   CHECK_NOTHROW(raised(0.008));
   CHECK_THROWS_WITH(raised(0.02), Catch::Contains("PIR1 would hang in or behind 'ceiling'"));
   CHECK_THROWS_WITH(raised(0.3), Catch::Contains("ceiling"));  // above it
   CHECK_THROWS_WITH(raised(-2.7), Catch::Contains("floor"));
   SceneSpec drawn_on_it = shipped_scene("meeting_room.gltf");
   for (SensorSpec& sensor : drawn_on_it.sensors) sensor.world_from_sensor.origin.y = 2.66;
-  CHECK_NOTHROW(compile(drawn_on_it, with(short_study_a(), {effect("sensor_height", {{"height_m", -0.1}})})));
+  CHECK_NOTHROW(compile(drawn_on_it, with(short_study_a(), {bare_effect("sensor_height", {{"height_m", -0.1}})})));
   const Model plain = meeting_room({});
   int lower = 0;
   for (std::uint32_t i = 0; i < 50; ++i) {
@@ -100,7 +98,7 @@ TEST_CASE("no sensor is raised into the ceiling, whose underside is 1 cm above i
 
 TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {
   for (const double forward_m : {0.1, -0.1}) {
-    const Model model = meeting_room({effect("seat_shift", {{"forward_m", forward_m}})});
+    const Model model = meeting_room({bare_effect("seat_shift", {{"forward_m", forward_m}})});
     for (std::uint32_t run = 0; run < 2; ++run) {
       const SeatSpec& seat = *std::ranges::find(model.compiled().scene().seats, model.trial_of(run), &SeatSpec::id);
       const Vec3 expected = seat.world_from_seat * Vec3(0, 0, -forward_m);
@@ -111,7 +109,8 @@ TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {
 
 TEST_CASE("scattered seats are taken with the scatter's spread") {
   const double sd = 0.05;
-  const Model model = meeting_room({effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 150);
+  const Model model =
+      meeting_room({bare_effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 150);
   double squares = 0;
   for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
     const Vec2 off = where_seated(model, run) - place_of(model, model.trial_of(run));
@@ -123,7 +122,7 @@ TEST_CASE("scattered seats are taken with the scatter's spread") {
 }
 
 TEST_CASE("a scaled body has scaled lengths") {
-  const Model plain = meeting_room({}), small = meeting_room({effect("body_size", {{"scale", 0.8}})});
+  const Model plain = meeting_room({}), small = meeting_room({bare_effect("body_size", {{"scale", 0.8}})});
   const auto head_m = [](const Model& model) {
     return model.compiled().trials()[0].people[0].humanoid.measures().shoulder_height_m;
   };
@@ -131,8 +130,8 @@ TEST_CASE("a scaled body has scaled lengths") {
 }
 
 TEST_CASE("four times the contrast reaches twice as far and is the same as a scaled range") {
-  const Model plain = meeting_room({}), warm = meeting_room({effect("thermal_contrast", {{"delta_t_k", 16.0}})}),
-              far = meeting_room({effect("range_scale", {{"scale", 2.0}})});
+  const Model plain = meeting_room({}), warm = meeting_room({bare_effect("thermal_contrast", {{"delta_t_k", 16.0}})}),
+              far = meeting_room({bare_effect("range_scale", {{"scale", 2.0}})});
   for (std::size_t i = 0; i < plain.compiled().array().rated().range.size(); ++i) {
     REQUIRE(warm.compiled().array().rated().range[i] == 2.0F * plain.compiled().array().rated().range[i]);
     REQUIRE(far.compiled().array().rated().range[i] == warm.compiled().array().rated().range[i]);
@@ -140,7 +139,7 @@ TEST_CASE("four times the contrast reaches twice as far and is the same as a sca
 }
 
 TEST_CASE("chair backs cut rays where boxes behind the seats stand and nobody walks otherwise than before") {
-  const Model plain = meeting_room({}), backs = meeting_room({effect("missing_occluder", {{"height_m", 0.5}})});
+  const Model plain = meeting_room({}), backs = meeting_room({bare_effect("missing_occluder", {{"height_m", 0.5}})});
   std::size_t cut = 0;
   for (std::size_t i = 0; i < plain.rays().rays.size(); ++i) {
     float expected = plain.rays().range[i];
@@ -167,7 +166,7 @@ TEST_CASE("a mirrored room looks to its sensors as the room does to mirrored sen
   for (const std::string across : {"x", "z"}) {
     const Model plain = meeting_room({});
     const ScriptSpec script =
-        with(short_study_a(), {effect("mirrored_room", {{"mirrored", 1.0}}, {{"across", across}})});
+        with(short_study_a(), {bare_effect("mirrored_room", {{"mirrored", 1.0}}, {{"across", across}})});
     SceneSpec scene = effects::in_force(plain.scene(), script).scene;
     const rt::Room room(scene.meshes);
     const FloorArea& floor = plain.scene().floor;
@@ -199,7 +198,7 @@ TEST_CASE("a mirrored room looks to its sensors as the room does to mirrored sen
 }
 
 TEST_CASE("with seats shifted by one everybody sits on the next and the last on the first") {
-  const Model plain = meeting_room({}), shifted = meeting_room({effect("seats_shifted", {{"places", 1.0}})});
+  const Model plain = meeting_room({}), shifted = meeting_room({bare_effect("seats_shifted", {{"places", 1.0}})});
   CHECK(place_of(shifted, "S1") == place_of(plain, "S2"));
   CHECK(place_of(shifted, "S10") == place_of(plain, "S1"));
   CHECK(glm::distance(where_seated(shifted, 0), place_of(plain, "S5")) < 1e-6);  // trial S4
@@ -207,9 +206,9 @@ TEST_CASE("with seats shifted by one everybody sits on the next and the last on 
 
 TEST_CASE("swapped labels swap two columns and a dead sensor's column is empty") {
   const auto plain = results_of(meeting_room({}));
-  const auto swapped =
-      results_of(meeting_room({effect("labels_swapped", {{"swapped", 1.0}}, {{"sensor", "PIR2"}, {"other", "PIR5"}})}));
-  const auto dead = results_of(meeting_room({effect("dead_sensor", {{"loss", 1.0}}, {{"sensor", "PIR4"}})}));
+  const auto swapped = results_of(
+      meeting_room({bare_effect("labels_swapped", {{"swapped", 1.0}}, {{"sensor", "PIR2"}, {"other", "PIR5"}})}));
+  const auto dead = results_of(meeting_room({bare_effect("dead_sensor", {{"loss", 1.0}}, {{"sensor", "PIR4"}})}));
   int ones = 0;
   for (std::size_t run = 0; run < plain.size(); ++run) {
     for (std::size_t i = 0; i < plain[run].samples.size(); ++i) {
@@ -229,8 +228,8 @@ TEST_CASE("a dying sensor keeps the share of its ones that it doesn't lose") {
   Sample row;
   row.time_s = 10.0;
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
-  effects::Pipeline pipeline(std::vector{effect("dead_sensor", {{"loss", 0.6}, {"from_s", 5.0}}, {{"sensor", "PIR1"}})},
-                             {scene, {}, {}});
+  effects::Pipeline pipeline(
+      std::vector{bare_effect("dead_sensor", {{"loss", 0.6}, {"from_s", 5.0}}, {{"sensor", "PIR1"}})}, {scene, {}, {}});
   pipeline.begin_run(1, 0);
   const int n = 20000;
   int kept = 0;
@@ -257,14 +256,16 @@ TEST_CASE("scaled arm and trunk motion is the script with the scaled numbers") {
     return results_of(compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", overrides)));
   };
   const std::string work = "people.0.actions.3.work.";
-  CHECK(same_rows(results_of(meeting_room({effect("arm_motion", {{"amplitude_scale", 0.5}, {"period_scale", 1.5}})})),
-                  scripted({work + "arm_amplitude_m=0.05", work + "arm_period_s=4.5"})));
-  CHECK(same_rows(results_of(meeting_room({effect("trunk_tilt", {{"amplitude_scale", 0.5}, {"period_scale", 0.5}})})),
-                  scripted({work + "tilt_choices_deg=[-7.5, 0, 7.5]", work + "tilt_every_s=15"})));
+  CHECK(same_rows(
+      results_of(meeting_room({bare_effect("arm_motion", {{"amplitude_scale", 0.5}, {"period_scale", 1.5}})})),
+      scripted({work + "arm_amplitude_m=0.05", work + "arm_period_s=4.5"})));
+  CHECK(same_rows(
+      results_of(meeting_room({bare_effect("trunk_tilt", {{"amplitude_scale", 0.5}, {"period_scale", 0.5}})})),
+      scripted({work + "tilt_choices_deg=[-7.5, 0, 7.5]", work + "tilt_every_s=15"})));
 }
 
 TEST_CASE("a second person is counted beside the first and doesn't keep the run going") {
-  const auto plain = results_of(meeting_room({})), two = results_of(meeting_room({effect("second_person", {})}));
+  const auto plain = results_of(meeting_room({})), two = results_of(meeting_room({bare_effect("second_person", {})}));
   for (std::size_t run = 0; run < plain.size(); ++run) {
     REQUIRE(two[run].samples.size() == plain[run].samples.size());
     for (std::size_t i = 0; i < plain[run].samples.size(); ++i) {
@@ -272,9 +273,9 @@ TEST_CASE("a second person is counted beside the first and doesn't keep the run 
       REQUIRE(two[run].samples[i].phase == plain[run].samples[i].phase);
     }
   }
-  const Model given = meeting_room(
-      {effect("second_person", {{"x_m", 1.2}, {"z_m", -2.0}, {"path_m", 1.0}, {"every_s", 2.0}, {"heading_deg", 0.0}},
-              {{"place", "given"}})});
+  const Model given = meeting_room({bare_effect(
+      "second_person", {{"x_m", 1.2}, {"z_m", -2.0}, {"path_m", 1.0}, {"every_s", 2.0}, {"heading_deg", 0.0}},
+      {{"place", "given"}})});
   State state(given, 0);
   double nearest = 10, farthest = 0;
   while (step(given, state)) {
@@ -287,7 +288,7 @@ TEST_CASE("a second person is counted beside the first and doesn't keep the run 
 }
 
 TEST_CASE("a second person goes on moving for as long as somebody walks slowly") {
-  ScriptSpec script = with(short_study_a(1), {effect("second_person", {{"every_s", 5.0}})});
+  ScriptSpec script = with(short_study_a(1), {bare_effect("second_person", {{"every_s", 5.0}})});
   script.trials.resize(1);
   script.summary = {};  // nobody works
   PersonSpec& slow = script.trials[0].people[0];
@@ -314,13 +315,13 @@ TEST_CASE("a second person goes on moving for as long as somebody walks slowly")
 TEST_CASE("what was estimated is moved to where the room has a place for it, and stays if that is so") {
   const SceneSpec room = shipped_scene("meeting_room.gltf");
   const auto raised = [&](double height_m) {
-    return effects::settled(effect("sensor_height", {{"height_m", height_m}}), room).parameters.at("height_m");
+    return effects::settled(bare_effect("sensor_height", {{"height_m", height_m}}), room).parameters.at("height_m");
   };
   CHECK(raised(-0.2) == -0.2);
   CHECK(raised(0.2) > 0.0);
   CHECK(raised(0.2) < 0.01);  // the ceiling is 1 cm above
   const auto placed = [&](double x, double z) {
-    const EffectSpec given = effect("second_person", {{"x_m", x}, {"z_m", z}}, {{"place", "given"}});
+    const EffectSpec given = bare_effect("second_person", {{"x_m", x}, {"z_m", z}}, {{"place", "given"}});
     const EffectSpec there = effects::settled(effects::resolved(effects::find("second_person"), given), room);
     CHECK_NOTHROW(results_of(meeting_room({there})));
     return Vec2(there.parameters.at("x_m"), there.parameters.at("z_m"));
@@ -329,7 +330,7 @@ TEST_CASE("what was estimated is moved to where the room has a place for it, and
   const Vec2 outside(5.15, 3.0), moved = placed(outside.x, outside.y);
   CHECK(room.floor.contains(moved));
   CHECK(std::abs(moved.x - outside.x) < 2.0);  // no farther than to what is free near the wall
-  const EffectSpec box = effect(
+  const EffectSpec box = bare_effect(
       "missing_occluder", {{"box_height_m", 1.0}, {"width_m", 0.5}, {"x_m", 40.0}, {"z_m", 40.0}}, {{"what", "box"}});
   const EffectSpec inside = effects::settled(box, room);
   CHECK(room.floor.contains(Vec2(inside.parameters.at("x_m"), inside.parameters.at("z_m"))));

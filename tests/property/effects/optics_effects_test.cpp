@@ -16,11 +16,6 @@ using namespace pirsim::test;
 
 namespace {
 
-EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
-                  std::map<std::string, std::string, std::less<>> choices = {}) {
-  return {name, std::move(parameters), std::move(choices), {}};
-}
-
 Vec3 direction_of_corner(const Vec2& corner, double plane_m) {
   return glm::normalize(Vec3(corner.x, corner.y, -plane_m));
 }
@@ -108,7 +103,7 @@ TEST_CASE("somebody who crosses a soft edge is noticed with the probability of t
 TEST_CASE("with soft edges somebody who sits still triggers nothing") {
   ScriptSpec script =
       script_of({person("anna", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Wait{60.0})})});
-  script.effects = {effect("soft_zone_edges", {{"sigma_deg", 2.0}})};
+  script.effects = {bare_effect("soft_zone_edges", {{"sigma_deg", 2.0}})};
   const Model model = compile(shipped_scene("meeting_room.gltf"), script);
   const auto rows = results_of(model)[0].samples;
   int moving = 0, still = 0;
@@ -124,7 +119,7 @@ TEST_CASE("soft edges keep the hard zones as their first copies") {
   const auto model_with = [](std::vector<EffectSpec> effects) {
     return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(), std::move(effects)));
   };
-  const Model hard = model_with({}), soft = model_with({effect("soft_zone_edges", {{"sigma_deg", 0.5}})});
+  const Model hard = model_with({}), soft = model_with({bare_effect("soft_zone_edges", {{"sigma_deg", 0.5}})});
   const RayBundle &a = hard.compiled().array().rated(), &b = soft.compiled().array().rated();
   CHECK(b.n_zones() == 7 * a.n_zones());
   const auto first_ray = [](const RayBundle& rays, std::size_t sensor) {
@@ -144,7 +139,7 @@ TEST_CASE("a glossy wall shows what a mirrored person behind it would show witho
   const Model plain = compile(scene, with(short_study_a(), {}));
   const Model glossy = compile(
       scene,
-      with(short_study_a(), {effect("wall_reflection", {{"coefficient", coefficient}}, {{"wall", "wall far"}})}));
+      with(short_study_a(), {bare_effect("wall_reflection", {{"coefficient", coefficient}}, {{"wall", "wall far"}})}));
   const auto wall = std::ranges::find(scene.meshes, std::string("wall far"), &TriMesh::name);
   REQUIRE(wall != scene.meshes.end());
   double front = -1e9;  // the face that looks into the room

@@ -18,12 +18,12 @@ using namespace pirsim::test;
 
 namespace {
 
-Model meeting_room(std::vector<EffectSpec> effects) {
+Model room_with(std::vector<EffectSpec> effects) {
   return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(), std::move(effects)));
 }
 
 /// Sensor A's triggers after the pipeline.
-Series through(effects::Pipeline pipeline, const Series& before) {
+Series first_after(effects::Pipeline pipeline, const Series& before) {
   Series after;
   for (std::size_t i = 0; i < before.size(); ++i) {
     std::array<std::uint8_t, 2> triggers{before[i], 0};
@@ -117,7 +117,7 @@ TEST_CASE("triggers that are lost one by one leave hardly any busy window withou
     for (std::size_t w = 0; w < n_windows; ++w) {
       for (std::size_t i = 0; i < per_window; ++i) before[w * ticks + 7 * i] = 1;
     }
-    const Series after = through(
+    const Series after = first_after(
         Bench().pipeline({effect("missed_triggers", {{"trigger_probability", p}}, {{"unit", "trigger"}})}), before);
     double silent = 0.0;
     for (std::size_t w = 0; w < n_windows; ++w) {
@@ -150,11 +150,12 @@ TEST_CASE("simultaneous false triggers come to all sensors at one rate and at th
 TEST_CASE("a hold that ignores triggers and a paralysable dead time do what their twins in a dozen lines do") {
   const Series before = random_triggers(50'000, 0.02);
   constexpr std::int64_t hold = 40, dead = 60;  // ticks
-  const Series held = through(Bench().pipeline({effect("pulse_stretching", {{"hold_s", hold / 50.0}, {"spread", 0.0}},
-                                                       {{"retrigger", "ignored"}})}),
-                              before);
-  const Series woken =
-      through(Bench().pipeline({effect("dead_time", {{"dead_s", dead / 50.0}}, {{"kind", "paralysable"}})}), before);
+  const Series held = first_after(
+      Bench().pipeline(
+          {effect("pulse_stretching", {{"hold_s", hold / 50.0}, {"spread", 0.0}}, {{"retrigger", "ignored"}})}),
+      before);
+  const Series woken = first_after(
+      Bench().pipeline({effect("dead_time", {{"dead_s", dead / 50.0}}, {{"kind", "paralysable"}})}), before);
   Series held_twin(before.size(), 0), woken_twin(before.size(), 0);
   for (std::size_t i = 0; i < before.size();) {
     if (before[i] == 0) {
@@ -183,9 +184,9 @@ TEST_CASE("natural motion as an effect is the natural style as the script would 
       }
     }
   }
-  const auto rows = results_of(meeting_room({effect("natural_motion", {}, {{"activity", "reading"}})}));
+  const auto rows = results_of(room_with({effect("natural_motion", {}, {{"activity", "reading"}})}));
   CHECK(same_rows(rows, results_of(compile(shipped_scene("meeting_room.gltf"), natural))));
-  CHECK_FALSE(same_rows(rows, results_of(meeting_room({}))));
+  CHECK_FALSE(same_rows(rows, results_of(room_with({}))));
 }
 
 TEST_CASE("a swaying trunk and a swinging chair go to and fro by their amplitude and in their period") {
@@ -195,18 +196,18 @@ TEST_CASE("a swaying trunk and a swinging chair go to and fro by their amplitude
     for (std::size_t i = 1; i < values.size(); ++i) n_crossings += (values[i - 1] < middle) != (values[i] < middle);
     return n_crossings;
   };
-  const auto lean = while_seated(meeting_room({effect("trunk_sway", {{"amplitude_deg", 2.0}, {"period_s", 4.0}})}), n,
+  const auto lean = while_seated(room_with({effect("trunk_sway", {{"amplitude_deg", 2.0}, {"period_s", 4.0}})}), n,
                                  [](const body::Outline& outline) { return outline.spine_lean; });
   CHECK(std::ranges::max(lean) == Approx(radians(2.0)).margin(1e-9));
   CHECK(std::ranges::min(lean) == Approx(radians(-2.0)).margin(1e-9));
   CHECK(std::abs(crossings(lean, 0.0) - 10) <= 1);
   const auto turn =
-      while_seated(meeting_room({effect("chair_swing", {{"amplitude_deg", 10.0}, {"period_s", 2.0}, {"share", 1.0}})}),
-                   n, [](const body::Outline& outline) { return outline.pelvis.heading; });
+      while_seated(room_with({effect("chair_swing", {{"amplitude_deg", 10.0}, {"period_s", 2.0}, {"share", 1.0}})}), n,
+                   [](const body::Outline& outline) { return outline.pelvis.heading; });
   const double middle = 0.5 * (std::ranges::max(turn) + std::ranges::min(turn));
   CHECK(std::ranges::max(turn) - middle == Approx(radians(10.0)).margin(1e-9));
   CHECK(std::abs(crossings(turn, middle) - 20) <= 1);
-  const auto still = while_seated(meeting_room({}), n, [](const body::Outline& outline) { return outline.spine_lean; });
+  const auto still = while_seated(room_with({}), n, [](const body::Outline& outline) { return outline.spine_lean; });
   CHECK(std::ranges::all_of(still, [](double value) { return value == 0.0; }));
 }
 
@@ -218,19 +219,17 @@ TEST_CASE("uneven arms don't repeat themselves, and stay within reach of the tab
     for (std::size_t i = period; i < values.size(); ++i) same += std::abs(values[i] - values[i - period]) < 1e-12;
     return same;
   };
-  const auto even = while_seated(meeting_room({}), n, of);
-  const auto uneven =
-      while_seated(meeting_room({effect("uneven_arms", {{"spread", 0.3}, {"pause_share", 0.0}})}), n, of);
+  const auto even = while_seated(room_with({}), n, of);
+  const auto uneven = while_seated(room_with({effect("uneven_arms", {{"spread", 0.3}, {"pause_share", 0.0}})}), n, of);
   CHECK(repeats(even) == n - period);
   CHECK(repeats(uneven) < n / 100);
-  const auto paused =
-      while_seated(meeting_room({effect("uneven_arms", {{"spread", 0.0}, {"pause_share", 1.0}})}), n, of);
+  const auto paused = while_seated(room_with({effect("uneven_arms", {{"spread", 0.0}, {"pause_share", 1.0}})}), n, of);
   CHECK(std::ranges::all_of(paused, [](double value) { return std::abs(value) < 1e-12; }));
 }
 
 TEST_CASE("a blind field takes the stated share of one lens's rays, all on the stated side") {
-  const Model plain = meeting_room({}),
-              blind = meeting_room({effect("blind_field", {{"share", 0.3}, {"side_deg", 0.0}}, {{"sensor", "PIR2"}})});
+  const Model plain = room_with({}),
+              blind = room_with({effect("blind_field", {{"share", 0.3}, {"side_deg", 0.0}}, {{"sensor", "PIR2"}})});
   const RayBundle &before = plain.compiled().array().rated(), &after = blind.compiled().array().rated();
   const auto first_of = [&](std::size_t sensor) {
     return before.zone_rays_begin[before.cluster_zones_begin[before.sensor_clusters_begin[sensor]]];
@@ -256,9 +255,9 @@ TEST_CASE("a blind field takes the stated share of one lens's rays, all on the s
 }
 
 TEST_CASE("a warm object moves and is seen and nobody counts it but a second person is counted") {
-  const auto plain = results_of(meeting_room({}));
+  const auto plain = results_of(room_with({}));
   for (const char* moves : {"roams", "sweeps"}) {
-    const auto rows = results_of(meeting_room({effect("warm_object", {}, {{"moves", moves}})}));
+    const auto rows = results_of(room_with({effect("warm_object", {}, {{"moves", moves}})}));
     REQUIRE(rows.size() == plain.size());
     std::size_t more = 0;
     for (std::size_t run = 0; run < rows.size(); ++run) {
@@ -270,12 +269,12 @@ TEST_CASE("a warm object moves and is seen and nobody counts it but a second per
     }
     CHECK(more > 0);
   }
-  const auto rows = results_of(meeting_room({effect("second_person", {}, {{"moves", "wanders"}})}));
+  const auto rows = results_of(room_with({effect("second_person", {}, {{"moves", "wanders"}})}));
   CHECK(std::ranges::max(rows.front().samples, {}, &Sample::people).people == 2);
 }
 
 TEST_CASE("who wanders gets about: several places far from each other") {
-  const Model model = meeting_room({effect("second_person", {{"every_s", 5.0}}, {{"moves", "wanders"}})});
+  const Model model = room_with({effect("second_person", {{"every_s", 5.0}}, {{"moves", "wanders"}})});
   State state(model, 0);
   Vec2 lower(1e9), upper(-1e9);
   while (step(model, state)) {
@@ -296,10 +295,10 @@ TEST_CASE("a rough wall scatters mirrored rays by the stated angle, the same in 
     }
     return directions;
   };
-  const auto smooth = ghosts(meeting_room({effect("wall_reflection", {{"coefficient", 0.9}})}));
+  const auto smooth = ghosts(room_with({effect("wall_reflection", {{"coefficient", 0.9}})}));
   const EffectSpec spec =
       effect("wall_reflection", {{"coefficient", 0.9}, {"scatter_deg", 5.0}}, {{"finish", "rough"}});
-  const auto rough = ghosts(meeting_room({spec}));
+  const auto rough = ghosts(room_with({spec}));
   REQUIRE(smooth.size() == rough.size());
   REQUIRE(smooth.size() > 50);
   double sum2 = 0.0;
@@ -309,18 +308,18 @@ TEST_CASE("a rough wall scatters mirrored rays by the stated angle, the same in 
   const double mean = sum2 / static_cast<double>(smooth.size()),
                error = 1.0 / std::sqrt(static_cast<double>(smooth.size()));
   CHECK(mean == Approx(50.0).epsilon(4.0 * error + 0.02));
-  CHECK(ghosts(meeting_room({spec})) == rough);
+  CHECK(ghosts(room_with({spec})) == rough);
 }
 
 TEST_CASE("several bystanders, at rest or not, keep a study small: each has as many actions as a trial has time for") {
   const auto at = [](double z_m) {
     return effect("warm_object", {{"x_m", 1.0}, {"z_m", z_m}, {"every_s", 0.0}}, {{"place", "given"}});
   };
-  const Model model = meeting_room({at(-1.0), at(-2.0), at(-3.0), effect("second_person", {})});
+  const Model model = room_with({at(-1.0), at(-2.0), at(-3.0), effect("second_person", {})});
   const sim::TrialModel& trial = model.compiled().trials().front();
   REQUIRE(trial.people.size() == 5);
   for (const sim::PersonModel& person : trial.people) CHECK(person.spec.actions.size() < 20'000);
-  CHECK(results_of(model).front().samples.size() == results_of(meeting_room({})).front().samples.size());
+  CHECK(results_of(model).front().samples.size() == results_of(room_with({})).front().samples.size());
 }
 
 TEST_CASE("a bystander of a day moves as long as the day lasts") {

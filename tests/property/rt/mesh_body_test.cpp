@@ -16,7 +16,7 @@ using namespace pirsim::test;
 namespace {
 
 constexpr TracerKind usual = CompileOptions{}.tracer;
-constexpr std::array kinds{TracerKind::reference, TracerKind::embree, usual};
+constexpr std::array three_kinds{TracerKind::reference, TracerKind::embree, usual};
 
 /// Closed and open surfaces; the same ones stand in for many solids, as they do for a person's.
 std::vector<MeshSolid> wardrobe(Draw& draw) {
@@ -45,7 +45,8 @@ TEST_CASE("all tracers give the same zones in 600 random scenes with mesh bodies
     RayBundle clipped = scene.bundle;
     room.clip(clipped);
     std::vector<std::unique_ptr<rt::Tracer>> tracers;
-    for (const TracerKind kind : kinds) tracers.push_back(rt::make_tracer(kind, {&room, &scene.bundle, &clipped}));
+    for (const TracerKind kind : three_kinds)
+      tracers.push_back(rt::make_tracer(kind, {&room, &scene.bundle, &clipped}));
     std::vector<PosedShape> solids = scene.solids;
     for (int tick = 0; tick < 4; ++tick) {
       for (PosedShape& solid : solids) {
@@ -53,8 +54,8 @@ TEST_CASE("all tracers give the same zones in 600 random scenes with mesh bodies
       }
       const std::size_t n = scene.bundle.n_zones();
       const ZoneBytes expected = seen_by(*tracers[0], solids, n);
-      for (std::size_t i = 1; i < kinds.size(); ++i) {
-        INFO("seed " << seed << ", tick " << tick << ", " << rt::name(kinds[i]) << " tracer");
+      for (std::size_t i = 1; i < tracers.size(); ++i) {
+        INFO("seed " << seed << ", tick " << tick << ", " << rt::name(three_kinds[i]) << " tracer");
         REQUIRE(seen_by(*tracers[i], solids, n) == expected);
       }
       std::vector<PosedShape> primitives = solids;
@@ -97,7 +98,7 @@ TEST_CASE("no tracer leaves out a mesh that a ray clips by micrometres at its ou
     }
     const bool expected = entry_distance(bundle.rays[0], solids[0], 12.0F).has_value();
     n_hits += expected ? 1 : 0;
-    for (const TracerKind kind : kinds) {
+    for (const TracerKind kind : three_kinds) {
       const ZoneBytes zones = seen_by(*rt::make_tracer(kind, {&nothing, &bundle, &bundle}), solids, 1);
       INFO("ray " << i << ", " << rt::name(kind) << " tracer");
       REQUIRE((zones[0] == 1) == expected);

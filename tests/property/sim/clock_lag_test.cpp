@@ -30,9 +30,9 @@ ScriptSpec at_work(double duration_s, std::vector<EffectSpec> effects, Reader re
   return script;
 }
 
-Model model_of(const ScriptSpec& script) { return compile(shipped_scene("meeting_room.gltf"), script); }
+Model room_model(const ScriptSpec& script) { return compile(shipped_scene("meeting_room.gltf"), script); }
 
-int n_ones(const std::vector<Sample>& samples, std::size_t from) {
+int n_ones_from(const std::vector<Sample>& samples, std::size_t from) {
   int n = 0;
   for (std::size_t i = from; i < samples.size(); ++i) n += static_cast<int>(std::ranges::count(samples[i].bits, 1));
   return n;
@@ -43,10 +43,10 @@ int n_ones(const std::vector<Sample>& samples, std::size_t from) {
 TEST_CASE("a row of a clock that is early has the bits of a later row of a longer simulation", "[clock]") {
   int n_at_end = 0;
   for (const Reader reader : {Reader::in_step, Reader::free_running}) {
-    const auto longer = results_of(model_of(at_work(run_s + 20.0, {}, reader)));
+    const auto longer = results_of(room_model(at_work(run_s + 20.0, {}, reader)));
     for (const int early_s : {1, 3, 15}) {
       INFO(early_s);
-      const auto early = results_of(model_of(at_work(run_s, {clock_lag(-early_s, 0.0)}, reader)));
+      const auto early = results_of(room_model(at_work(run_s, {clock_lag(-early_s, 0.0)}, reader)));
       REQUIRE(early.size() == longer.size());
       for (std::size_t run = 0; run < early.size(); ++run) {
         REQUIRE(early[run].samples.size() == static_cast<std::size_t>(run_s));
@@ -59,7 +59,8 @@ TEST_CASE("a row of a clock that is early has the bits of a later row of a longe
           REQUIRE(here.phase == now.phase);
           REQUIRE(here.people == now.people);
         }
-        n_at_end += n_ones(early[run].samples, static_cast<std::size_t>(run_s) - static_cast<std::size_t>(early_s));
+        n_at_end +=
+            n_ones_from(early[run].samples, static_cast<std::size_t>(run_s) - static_cast<std::size_t>(early_s));
       }
     }
   }
@@ -67,17 +68,17 @@ TEST_CASE("a row of a clock that is early has the bits of a later row of a longe
 }
 
 TEST_CASE("a clock that is late by as much undoes one that is early, but for both ends", "[clock]") {
-  const auto plain = results_of(model_of(at_work(run_s, {})));
-  const auto late = results_of(model_of(at_work(run_s, {clock_lag(3.0, 0.0)})));
+  const auto plain = results_of(room_model(at_work(run_s, {})));
+  const auto late = results_of(room_model(at_work(run_s, {clock_lag(3.0, 0.0)})));
   for (std::size_t row = 3; row < plain[0].samples.size(); ++row) {
     REQUIRE(late[0].samples[row].bits == plain[0].samples[row - 3].bits);
   }
-  CHECK(n_ones({late[0].samples.begin(), late[0].samples.begin() + 3}, 0) == 0);
+  CHECK(n_ones_from({late[0].samples.begin(), late[0].samples.begin() + 3}, 0) == 0);
 }
 
 TEST_CASE("one sensor's clock is early and the others' rows stay as they are", "[clock]") {
-  const auto longer = results_of(model_of(at_work(run_s + 5.0, {})));
-  const auto early = results_of(model_of(at_work(run_s, {clock_lag(-5.0, 0.0, "PIR2")})));
+  const auto longer = results_of(room_model(at_work(run_s + 5.0, {})));
+  const auto early = results_of(room_model(at_work(run_s, {clock_lag(-5.0, 0.0, "PIR2")})));
   const std::size_t second = 1;
   for (std::size_t row = 0; row < early[0].samples.size(); ++row) {
     for (std::size_t s = 0; s < early[0].samples[row].bits.size(); ++s) {
@@ -87,7 +88,7 @@ TEST_CASE("one sensor's clock is early and the others' rows stay as they are", "
 }
 
 TEST_CASE("recordings, copies of a state and single ticks give the rows of a clock that is early", "[clock]") {
-  const Model model = model_of(at_work(run_s, {clock_lag(-4.26, -0.5), {"pulse_stretching", {}, {}, {}}}));
+  const Model model = room_model(at_work(run_s, {clock_lag(-4.26, -0.5), {"pulse_stretching", {}, {}, {}}}));
   const auto rows = results_of(model);
   const Recording tracks = record(model, all_runs(model), 1);
   std::vector<RunResult> emitted;
@@ -114,7 +115,7 @@ TEST_CASE("recordings, copies of a state and single ticks give the rows of a clo
 }
 
 TEST_CASE("a recording that ends too early for a clock is refused instead of ending in silence", "[clock]") {
-  const Model plain = model_of(at_work(run_s, {}));
+  const Model plain = room_model(at_work(run_s, {}));
   const Recording tracks = record(plain, all_runs(plain), 1);
   const auto emit_with = [&](const EffectSpec& effect) {
     emit(plain, tracks, {.effects = std::vector{effect}}, [](const RunResult&) {});

@@ -1,6 +1,7 @@
 // Crowds with random scripts: nobody stays stuck, nobody walks through anybody uncounted, bodies move as bodies do.
 #include <glm/gtc/quaternion.hpp>
 #include <map>
+#include <utility>
 
 #include "support/body_checks.hpp"
 #include "support/catch.hpp"
@@ -227,15 +228,18 @@ TEST_CASE("who squeezes past somebody goes at half the pace, and at the usual on
       compile(corridor(half_m),
               script_of({person("walker", {act(action::Enter{"west"}), act(action::Leave{"east"})}),
                          person("stands", {act(action::Appear{{stands_x_m, -0.25}, 90.0}), act(action::Wait{30.0})})}));
-  std::optional<Vec2> before;
+  bool was_there = false;
+  Vec2 before{0.0};
   double fastest = 0.0, fastest_abreast = 0.0;
   int n_abreast = 0;
   const CrowdRecord record = watch_crowd(model, 0, 1, [&](const sim::RunState& state) {
     const sim::Actor &walker = state.crowd.actors()[0], &stands = state.crowd.actors()[1];
-    if (!walker.present() || !stands.present()) return before.reset();
+    const bool is_there = walker.present() && stands.present();
+    const bool is_known = std::exchange(was_there, is_there) && is_there;
+    if (!is_there) return;
     const Vec2 place = walker.motion().position(), other = stands.motion().position();
-    if (before) {
-      const double speed = glm::distance(place, *before) / dt;
+    if (is_known) {
+      const double speed = glm::distance(place, before) / dt;
       const bool abreast = std::abs(place.x - other.x) < abreast_m;
       n_abreast += abreast ? 1 : 0;
       if (abreast) fastest_abreast = std::max(fastest_abreast, speed);

@@ -23,8 +23,8 @@ ScriptSpec days_of(const std::string& schedule, const std::string& more = "") {
   return script;
 }
 
-Model model_of(const std::string& schedule, const std::string& more = "",
-               const std::string& room = "meeting_room.gltf") {
+Model day_model(const std::string& schedule, const std::string& more = "",
+                const std::string& room = "meeting_room.gltf") {
   return compile(shipped_scene(room), days_of(schedule, more));
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("Empty hours that are passed over leave every bit as if they had been 
       "effects: [warm_chair, {clock_lag: {lag_s: -7.3, drift_percent: -0.5}}, dead_time]\n"};
   for (const std::string& more : variants) {
     INFO(more);
-    const Model model = model_of(short_meeting, more);
+    const Model model = day_model(short_meeting, more);
     const std::vector<Sample> expected = ticked(model, 0);
     CHECK(run_once(model, 0).samples == expected);
     std::vector<Sample> stepped;
@@ -84,7 +84,7 @@ TEST_CASE("A script with pauses is passed over in the same way") {
 }
 
 TEST_CASE("Rows tell the time of day, and what the room is used for") {
-  const Model model = model_of(short_meeting);
+  const Model model = day_model(short_meeting);
   CHECK(model.columns()[3] == "time");
   const std::vector<Sample> rows = run_once(model, 0).samples;
   REQUIRE(rows.size() == 25 * 60);
@@ -97,15 +97,15 @@ TEST_CASE("Rows tell the time of day, and what the room is used for") {
   }
   CHECK(phases == std::set<std::string>{"empty", "meeting", "occupied"});
   for (const std::string to : {"09:01", "09:05", "09:07", "09:40"}) {
-    const Model part = model_of("  from: 09:00\n  to: " + to + "\n  cleaning: 19:00\n");
+    const Model part = day_model("  from: 09:00\n  to: " + to + "\n  cleaning: 19:00\n");
     CHECK(run_once(part, 0).samples.back().clock == "2026-03-02T" + to + ":00");
   }
-  const Model midnight = model_of("  from: 23:59\n  to: 24:00\n  meetings: {}\n");
+  const Model midnight = day_model("  from: 23:59\n  to: 24:00\n  meetings: {}\n");
   CHECK(run_once(midnight, 0).samples.back().clock == "2026-03-03T00:00:00");
 }
 
 TEST_CASE("Days are the same for any threads and in any part of the study") {
-  const Model model = model_of(
+  const Model model = day_model(
       "  from: 09:58\n  to: 10:06\n  meetings: {held: [{at: 10:00, duration_min: 4, people: 3}]}\n", "replicates: 3\n");
   const auto rows_of = [&](StudyOptions options) {
     std::vector<std::vector<Sample>> rows;
@@ -121,14 +121,14 @@ TEST_CASE("Days are the same for any threads and in any part of the study") {
 
 TEST_CASE("All come at once through one door") {
   const Model model =
-      model_of("  from: 08:59\n  to: 09:04\n  staff: [{count: 8}]\n  arrival: {mean: 09:00, sd_min: 0}\n");
+      day_model("  from: 08:59\n  to: 09:04\n  staff: [{count: 8}]\n  arrival: {mean: 09:00, sd_min: 0}\n");
   const RunResult result = run_once(model, 0);
   CHECK(!result.fault);
   CHECK(result.samples.back().people == 8);
 }
 
 TEST_CASE("Who is there when the part of a day begins comes in first") {
-  const Model model = model_of("  from: 10:00\n  to: 10:05\n  staff: [{count: 3}]\n", "", "open_office.gltf");
+  const Model model = day_model("  from: 10:00\n  to: 10:05\n  staff: [{count: 3}]\n", "", "open_office.gltf");
   const studies::ScheduleOutlook expected = studies::outlook(model.compiled(), 0);
   CHECK(expected.staff.size() == 3);
   CHECK(expected.working_days == 1);
@@ -148,7 +148,7 @@ TEST_CASE("Who is there when the part of a day begins comes in first") {
 }
 
 TEST_CASE("A day's page shows the room that people were in: the mirrored one if the study is mirrored") {
-  const Model model = model_of(short_meeting, "effects: [{mirrored_room: {across: z}}]\n");
+  const Model model = day_model(short_meeting, "effects: [{mirrored_room: {across: z}}]\n");
   studies::DayReport report(model);
   report.add_run(run_once(model, 0, Record::samples, Trace::none, Occupants::told));
   const io::ReportSection section = report.section("");
@@ -208,8 +208,8 @@ TEST_CASE("A thing that an effect adds is nobody, and nobody's day is another fo
   const std::string schedule =
       "  from: 08:30\n  to: 13:00\n  staff: [{count: 3}]\n  arrival: {mean: 09:00}\n  cleaning: 08:35\n"
       "  meetings: {held: [{at: 10:00, duration_min: 20, people: 2}]}\n";
-  const Model alone = model_of(schedule, "", "open_office.gltf"),
-              beside = model_of(schedule, "effects: [{warm_object: {present: 1}}]\n", "open_office.gltf");
+  const Model alone = day_model(schedule, "", "open_office.gltf"),
+              beside = day_model(schedule, "effects: [{warm_object: {present: 1}}]\n", "open_office.gltf");
   const sim::DayPlan expected = sim::draw_day(alone.compiled(), 0), planned = sim::draw_day(beside.compiled(), 0);
   REQUIRE(planned.size() == expected.size() + 1);
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -231,7 +231,7 @@ TEST_CASE("People of another schedule aren't shared between studies") {
   const auto arriving = [&](const std::string& at) {
     return "  from: 08:00\n  to: 10:00\n  staff: [{count: 1}]\n  arrival: {mean: " + at + ", sd_min: 0}\n";
   };
-  const Model early = model_of(arriving("08:30"));
+  const Model early = day_model(arriving("08:30"));
   const ScriptSpec later = days_of(arriving("09:30"));
   CompileOptions like;
   like.like = &early;

@@ -53,7 +53,7 @@ struct Watched {
   bool all_done = true;
 };
 
-Watched watch(const Model& model, std::uint32_t run) {
+Watched watch_doors(const Model& model, std::uint32_t run) {
   const sim::CompiledStudy& study = model.compiled();
   const std::vector<DoorLeaf>& leaves = study.array().leaves();
   sim::RunState state(study, run);
@@ -123,7 +123,7 @@ TEST_CASE("one who comes in, goes to and fro and leaves opens each door, and bot
       inner.opens = front.opens = opens;
       inner.hinge = front.hinge = hinge;
       const Model model = compile(two_rooms({front, inner}), script_of({walker("W", 1.0, 2, 0.3)}));
-      const Watched seen = watch(model, 0);
+      const Watched seen = watch_doors(model, 0);
       INFO(seen.end_s << " s; deepest: " << seen.deepest);
       CHECK(seen.all_done);
       CHECK(seen.end_s < 90.0);
@@ -146,7 +146,7 @@ TEST_CASE("who is stopped in an open doorway by the next door, round the corner,
     const PersonSpec leaver = person("L", {act(action::Enter{"in"}), act(action::Walk{{{4.8, 0.3}}}),
                                            act(action::Wait{3.0}), act(action::Leave{"in"})});
     const Model model = compile(scene, script_of({leaver}));
-    const Watched seen = watch(model, 0);
+    const Watched seen = watch_doors(model, 0);
     INFO(seen.end_s << " s; deepest: " << seen.deepest);
     CHECK(seen.all_done);
     CHECK(seen.end_s < 40.0);
@@ -155,14 +155,14 @@ TEST_CASE("who is stopped in an open doorway by the next door, round the corner,
 
 TEST_CASE("crowds go through a door in both directions: all finish, leaves keep off people's trunks", "[seconds]") {
   std::vector<PersonSpec> people;
-  for (int i = 0; i < 6; ++i) people.push_back(walker("W" + std::to_string(i), 4.0 * i, 4, -1.2 + 0.48 * i));
+  for (int i = 0; i < 6; ++i) people.push_back(walker("W" + std::to_string(i), 4.0 * i, 3, -1.2 + 0.48 * i));
   const ScriptSpec script = script_of(people);
-  const Watched without = watch(compile(two_rooms({}), script), 0);
+  const Watched without = watch_doors(compile(two_rooms({}), script), 0);
   for (const DoorState state : {DoorState::shut, DoorState::habit, DoorState::open}) {
     DoorSpec inner = inner_door(state);
     inner.stands_open_s = 5.0;
     inner.shut_share = 0.5;
-    const Watched seen = watch(compile(two_rooms({front_door(DoorState::shut), inner}), script), 0);
+    const Watched seen = watch_doors(compile(two_rooms({front_door(DoorState::shut), inner}), script), 0);
     INFO(word_of(state) << ": " << seen.end_s << " s (without doors " << without.end_s << "), openings "
                         << seen.openings[0] << " and " << seen.openings[1] << ", incidents " << seen.n_passes << " ("
                         << without.n_passes << "), trunk " << seen.trunk_m << " m, deepest " << seen.deepest_m

@@ -22,17 +22,17 @@ PersonSpec in_meshes(PersonSpec person, std::uint32_t n = testing::fine) {
   return person;
 }
 
-PersonSpec walker() {
+PersonSpec mesh_walker() {
   return person("walker", {act(action::Appear{{-4, -6}, 0}), act(action::Walk{{{4, -7}, {0, -9}}})});
 }
 
-struct Comparison {
+struct Difference {
   std::size_t active = 0;  ///< zones that the first run has active, over all ticks
   std::size_t lost = 0, gained = 0;
 };
-Comparison compare(const RunResult& first, const RunResult& second) {
+Difference difference(const RunResult& first, const RunResult& second) {
   REQUIRE(first.zones.size() == second.zones.size());
-  Comparison result;
+  Difference result;
   for (std::size_t tick = 0; tick < first.zones.size(); ++tick) {
     for (std::size_t zone = 0; zone < first.zones[tick].size(); ++zone) {
       const auto before = first.zones[tick].test(zone), after = second.zones[tick].test(zone);
@@ -52,25 +52,25 @@ TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact 
     return run_once(compile(shipped_scene("open_hall.gltf"), script_of({person}), {tracer}), 0,
                     Record::samples_and_zones);
   };
-  const RunResult exact = run(walker(), CompileOptions{}.tracer);
-  const RunResult meshed = run(in_meshes(walker()), CompileOptions{}.tracer);
-  const auto [active, lost, gained] = compare(exact, meshed);
+  const RunResult exact = run(mesh_walker(), CompileOptions{}.tracer);
+  const RunResult meshed = run(in_meshes(mesh_walker()), CompileOptions{}.tracer);
+  const auto [active, lost, gained] = difference(exact, meshed);
   WARN(active << " active zones in " << exact.zones.size() << " ticks; fine meshes lose " << lost << ", gain "
               << gained);
   CHECK(active > 1000);
   CHECK(lost < active / 500);
   CHECK(gained == 0);  // the meshes are inscribed
 
-  const auto coarse = compare(exact, run(in_meshes(walker(), 2), CompileOptions{}.tracer));
+  const auto coarse = difference(exact, run(in_meshes(mesh_walker(), 2), CompileOptions{}.tracer));
   WARN("meshes of eight sectors lose " << coarse.lost << ", gain " << coarse.gained);
   CHECK(coarse.lost > active / 500);
   CHECK(coarse.gained == 0);
 
-  const RunResult plainly = run(in_meshes(walker()), TracerKind::reference);
+  const RunResult plainly = run(in_meshes(mesh_walker()), TracerKind::reference);
   CHECK(plainly.zones == meshed.zones);
   CHECK(plainly.samples == meshed.samples);
 
-  PersonSpec headless = walker();  // and a mesh far away from its part does make a difference
+  PersonSpec headless = mesh_walker();  // and a mesh far away from its part does make a difference
   headless.body_meshes["torso"] = testing::mesh_solid(testing::box_mesh({-0.01, 2, -0.01}, {0.01, 2.1, 0.01}));
   CHECK(run(headless, CompileOptions{}.tracer).zones != exact.zones);
 }

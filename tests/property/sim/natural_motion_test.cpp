@@ -33,12 +33,12 @@ struct Office {
 };
 
 /// So many people, an hour each.
-Office watch(Activity activity, std::uint32_t n_people) {
+Office watch_office(Activity activity, std::uint32_t n_people) {
   constexpr int hour = 3600 * tick_rate_hz;
   Office office;
   for (std::uint32_t person = 0; person < n_people; ++person) {
     Sitter sitter(person, man(), desk_seat());
-    Observer observer;
+    SitterObserver observer;
     for (int tick = 0; tick < hour; ++tick) {
       sitter.tick(activity);
       observer.see(sitter.motion);
@@ -56,7 +56,7 @@ Office watch(Activity activity, std::uint32_t n_people) {
 
 const Office& hours_of(Activity activity) {
   static std::map<Activity, Office> offices;
-  if (!offices.contains(activity)) offices.emplace(activity, watch(activity, 40));
+  if (!offices.contains(activity)) offices.emplace(activity, watch_office(activity, 40));
   return offices.at(activity);
 }
 

@@ -22,7 +22,7 @@ struct Encounter {
   std::size_t most_people = 0;
 };
 
-Encounter watch(const Model& model) {
+Encounter watch_pair(const Model& model) {
   Encounter result;
   State state(model, 0);
   while (!state.finished()) {
@@ -49,7 +49,7 @@ TEST_CASE("two people who walk towards each other in an open hall pass without t
                                        person("a", {act(action::Appear{{-5, -10}, 0}), act(action::Walk{{{5, -10}}})}),
                                        person("b", {act(action::Appear{{5, -10}, 0}), act(action::Walk{{{-5, -10}}})}),
                                    })));
-  const Encounter encounter = watch(model);
+  const Encounter encounter = watch_pair(model);
   CHECK(encounter.most_people == 2);
   // Trunks are at most half a body breadth wide each: 0.36 m between pelvises is shoulder past shoulder at an angle.
   CHECK(encounter.nearest_m > 0.36);
@@ -68,7 +68,7 @@ TEST_CASE("six people cross a hall on random ways: nobody is walked through and 
                               {act(action::Appear{{-5.0 + 2.0 * i, -3.0}, 0}), act(action::Walk{{point(), point()}}),
                                act(action::Walk{{{-5.0 + 2.0 * i, -20.0}}})}));
     }
-    const Encounter encounter = watch(Model(compile(scene, script_of(people))));
+    const Encounter encounter = watch_pair(Model(compile(scene, script_of(people))));
     INFO("seed " << seed << ", nearest " << encounter.nearest_m);
     CHECK(encounter.most_people == 6);
     CHECK(encounter.nearest_m > 0.36);
@@ -84,7 +84,7 @@ TEST_CASE("a meeting of five: all come in through one door, sit side by side, an
                 act(action::Work{30.0}), act(action::Rise{}), act(action::Leave{"door"})}));
   }
   const Model model(compile(shipped_scene("meeting_room.gltf"), script_of(people)));
-  const Encounter encounter = watch(model);
+  const Encounter encounter = watch_pair(model);
   CHECK(encounter.most_people == 5);
   CHECK(encounter.nearest_m > 0.36);
   const RunResult result = run_once(model, 0);
@@ -99,7 +99,7 @@ TEST_CASE("two who use one door in opposite directions wait for each other, and 
   for (const double delay : {1.0, 20.0, 31.0, 33.0, 35.0, 37.0}) {
     const PersonSpec second = person("second", {act(action::Wait{delay}), act(action::Enter{"door"}),
                                                 act(action::Sit{"S4"}), act(action::Leave{"door"})});
-    const Encounter encounter = watch(Model(compile(scene, script_of({first, second}))));
+    const Encounter encounter = watch_pair(Model(compile(scene, script_of({first, second}))));
     INFO("the second comes after " << delay << " s; nearest " << encounter.nearest_m << " m");
     CHECK(encounter.nearest_m > 0.36);
   }
@@ -114,7 +114,7 @@ TEST_CASE("one who leaves and one who comes in pass a door one after the other, 
           person("in", {act(action::Wait{delay}), act(action::Enter{"door"}), act(action::Walk{{target}})})};
       for (int order = 0; order < 2; ++order) {
         INFO("delay " << delay << ", target x " << target.x << ", order " << order);
-        CHECK(watch(Model(compile(scene, script_of(people)))).nearest_m > 0.36);
+        CHECK(watch_pair(Model(compile(scene, script_of(people)))).nearest_m > 0.36);
         std::swap(people[0], people[1]);
       }
     }
@@ -195,7 +195,7 @@ TEST_CASE("ten people fill the meeting room and leave it when the meeting is ove
                {act(action::Wait{4.0 * i}), act(action::Enter{"door"}), act(action::Sit{"S" + std::to_string(seat)}),
                 act_at(70.0 + 4.0 * (10 - i), action::Rise{}), act(action::Leave{"door"})}));
   }
-  const Encounter encounter = watch(Model(compile(shipped_scene("meeting_room.gltf"), script_of(people))));
+  const Encounter encounter = watch_pair(Model(compile(shipped_scene("meeting_room.gltf"), script_of(people))));
   CHECK(encounter.most_people == 10);
   CHECK(encounter.nearest_m > 0.36);
 }

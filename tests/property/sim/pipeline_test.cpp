@@ -13,7 +13,7 @@ using namespace pirsim::test;
 
 namespace {
 
-int total_bits(const RunResult& result) {
+int all_bits(const RunResult& result) {
   int total = 0;
   for (const Sample& sample : result.samples) {
     for (const auto bit : sample.bits) total += bit;
@@ -46,12 +46,12 @@ TEST_CASE("an empty room gives zeros, and so does a person behind every beam, in
   };
   const RunResult empty = run({person("nobody", {act(action::Wait{20.0})})});
   CHECK(empty.samples.size() == 20);
-  CHECK(total_bits(empty) == 0);
+  CHECK(all_bits(empty) == 0);
   const auto pace = [&](double z) {
     return run({person("walker", {act(action::Appear{{-4, z}, 0}), act(action::Walk{{{4, z}, {-4, z}}})})});
   };
-  CHECK(total_bits(pace(-1.0)) == 0);  // the sensor hangs at z = -3 and looks along -Z
-  CHECK(total_bits(pace(-7.0)) > 0);
+  CHECK(all_bits(pace(-1.0)) == 0);  // the sensor hangs at z = -3 and looks along -Z
+  CHECK(all_bits(pace(-7.0)) > 0);
 }
 
 TEST_CASE("an added occluder never adds an active zone, at no tick of a whole trial") {

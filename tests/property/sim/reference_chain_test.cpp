@@ -358,6 +358,7 @@ TEST_CASE("a second model of the chain, from the lens's law to volts, agrees on 
 
 TEST_CASE("a lens that is turned in its file and held the other way round sees the same, a mirrored one the mirrored",
           "[sim][analog][turned][seconds]") {
+  std::size_t next = 0;
   for (const std::string& id : test::shipped_lenses()) {
     const SensorModelSpec lens = io::read_sensor_model(test::data("sensors/" + id + ".yaml"));
     const auto any = [](const Ray&) { return true; };
@@ -372,7 +373,9 @@ TEST_CASE("a lens that is turned in its file and held the other way round sees t
     };
     const std::vector<double> drawn = Pirsim(lens, 25, 34).volts(walker(1), 5.0, 27.0, any);
     REQUIRE(largest(drawn) > 0.05);
-    for (const test::Turn& turn : test::all_turns) {
+    // Two of the five turns, lens by lens others: each turn of eight lenses.
+    for (int i = 0; i < 2; ++i) {
+      const test::Turn& turn = test::all_turns[next++ % test::all_turns.size()];
       const Quat held = glm::angleAxis(radians(turn.mirror * -90.0 * turn.quarters), Vec3(0, 0, 1));
       const Pirsim turned(test::turned(lens, turn), 25, 34, held);
       const std::vector<double> volts = turned.volts(walker(static_cast<float>(turn.mirror)), 5.0, 27.0, any);

@@ -83,11 +83,11 @@ TEST_CASE("and the reference's zones, sampled through all of them and with scatt
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
     CHECK(compare_study(room_of(study), shipped_script(study, {"replicates=1", "sensing.response=zones"}),
-                        TracerKind::reference, 11)
+                        TracerKind::reference, 23)
               .n_different == 0);
   }
   const ScriptSpec scattered = shipped_script(
       "studyA.yaml",
       {"replicates=2", "people.0.seat_scatter.position_sd_m=0.05", "people.0.seat_scatter.heading_sd_deg=4.3"});
-  CHECK(compare_study("meeting_room.gltf", scattered, TracerKind::reference, 101).n_different == 0);
+  CHECK(compare_study("meeting_room.gltf", scattered, TracerKind::reference, 211).n_different == 0);
 }

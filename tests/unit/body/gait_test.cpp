@@ -10,8 +10,6 @@ using namespace pirsim::body::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 Motion standing(double heading = 0.0, double dt = tick_s) { return Motion(man(), {0, 0}, heading, 0.0, dt); }
 
 /// Ankle joint in the person's own frame on the floor: x right, y up, z back.

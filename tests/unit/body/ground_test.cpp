@@ -11,7 +11,7 @@ using body::WalkableFloor;
 
 namespace {
 
-FloorArea rectangle(double width, double depth) {
+FloorArea plain_rectangle(double width, double depth) {
   return FloorArea({{{0, 0}, {width, 0}, {width, depth}, {0, depth}}}, 0.0);
 }
 
@@ -33,10 +33,10 @@ TEST_CASE("a ground for people of all sizes gives each the floor of a ground of 
   int found = 0;
   for (int round = 0; round < 60; ++round) {
     const std::vector<TriMesh> things = random_needles(stream);
-    const body::Ground shared(rectangle(3, 2), {}, things, 0.4);
+    const body::Ground shared(plain_rectangle(3, 2), {}, things, 0.4);
     for (const double keep_m : {0.1, 0.23, 0.3, 0.4}) {
-      const WalkableFloor floor(shared, keep_m), own(rectangle(3, 2), {}, things, keep_m);
-      const body::Ground ground(rectangle(3, 2), {}, things, keep_m);
+      const WalkableFloor floor(shared, keep_m), own(plain_rectangle(3, 2), {}, things, keep_m);
+      const body::Ground ground(plain_rectangle(3, 2), {}, things, keep_m);
       const auto open = shared.open_cells(keep_m);
       REQUIRE(open == ground.open_cells(keep_m));
       REQUIRE(shared.steps_between(open, keep_m).open == ground.steps_between(open, keep_m).open);
@@ -55,7 +55,7 @@ TEST_CASE("a step is taken exactly where its whole line keeps clear, and its dia
   Stream stream({.seed = 26});
   int taken = 0, narrow = 0;
   for (int round = 0; round < 100; ++round) {
-    const body::Ground ground(rectangle(3, 2), {}, random_needles(stream), 0.35);
+    const body::Ground ground(plain_rectangle(3, 2), {}, random_needles(stream), 0.35);
     const double keep_m = 0.05 + 0.3 * stream.uniform();
     const auto open = ground.open_cells(keep_m);
     const body::StepGrid grid = ground.steps_between(open, keep_m);
@@ -86,7 +86,7 @@ TEST_CASE("there is a way exactly where one is found: from and to any place, amo
   Stream stream({.seed = 24});
   int found = 0, none = 0;
   for (int round = 0; round < 100; ++round) {
-    const WalkableFloor floor(rectangle(3, 2), {}, random_needles(stream), 0.3);
+    const WalkableFloor floor(plain_rectangle(3, 2), {}, random_needles(stream), 0.3);
     const auto place = [&] { return Vec2(3.4 * stream.uniform() - 0.2, 2.4 * stream.uniform() - 0.2); };
     std::vector<body::Disc> others;
     for (std::uint32_t i = stream.index(3); i > 0; --i) others.push_back({place(), 0.25});

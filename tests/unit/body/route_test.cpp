@@ -5,19 +5,17 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "pirsim/error.hpp"
 #include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
+using pirsim::pi;
 using pirsim::Vec2;
 using pirsim::body::Route;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 ab = b - a;

@@ -14,10 +14,10 @@ using namespace pirsim::control;
 
 namespace {
 
-constexpr double minute_s = 60.0;
-const ColumnOwners one_sensor{{"PIR"}, {}, {}};
+constexpr double a_minute_s = 60.0;
+const ColumnOwners one_sensor_alone{{"PIR"}, {}, {}};
 
-RuleSpec rule_with(std::vector<double> delays_min) {
+RuleSpec desk_rule(std::vector<double> delays_min) {
   LightSpec light;
   light.id = "desk";
   light.delays_min = std::move(delays_min);
@@ -39,16 +39,16 @@ Sample row_at(double ends_s, std::uint8_t bit, int people, int replicate = 1) {
 }  // namespace
 
 TEST_CASE("a row's time that is none is told") {
-  Control control(rule_with({1.0}), one_sensor, minute_s, People::known);
-  Sample row = row_at(minute_s, 0, 0);
+  Control control(desk_rule({1.0}), one_sensor_alone, a_minute_s, People::known);
+  Sample row = row_at(a_minute_s, 0, 0);
   row.clock = "8 o'clock";
   CHECK_THROWS_WITH(control.add(row), contains("the time '8 o'clock' of a row is none"));
 }
 
 TEST_CASE("what isn't known of people is empty, not 0") {
   const auto line_of = [](People people, int n) {
-    Control control(rule_with({1.0}), one_sensor, minute_s, people);
-    for (int i = 0; i < 60; ++i) control.add(row_at(minute_s * (i + 1), i < 30, n));
+    Control control(desk_rule({1.0}), one_sensor_alone, a_minute_s, people);
+    for (int i = 0; i < 60; ++i) control.add(row_at(a_minute_s * (i + 1), i < 30, n));
     const Costs costs = control.finish();
     const std::string text = to_csv(costs);
     const std::size_t at = text.find("desk,1,");
@@ -67,9 +67,9 @@ namespace {
 
 /// Days of ten hours in which somebody is there; a minute's motion after each of these pauses, round and round.
 LightCosts costs_of(int n_days, const std::vector<int>& pauses_min, double rule_min = 10.0, double at_most = 1.0) {
-  RuleSpec rule = rule_with({rule_min});
+  RuleSpec rule = desk_rule({rule_min});
   rule.lights.front().at_most_a_week = at_most;
-  Control control(rule, one_sensor, minute_s);
+  Control control(rule, one_sensor_alone, a_minute_s);
   std::size_t pause = 0;
   int still = 0;
   for (int day = 0; day < n_days; ++day) {
@@ -77,7 +77,7 @@ LightCosts costs_of(int n_days, const std::vector<int>& pauses_min, double rule_
       const bool moves = still >= pauses_min[pause] || i == 0;
       if (moves && i > 0) pause = (pause + 1) % pauses_min.size();
       still = moves ? 0 : still + 1;
-      Sample row = row_at(minute_s * (i + 1), moves, 1, day);
+      Sample row = row_at(a_minute_s * (i + 1), moves, 1, day);
       row.clock.clear();
       control.add(row);
     }
@@ -124,10 +124,10 @@ TEST_CASE("the advised delay is long enough in 95 of 100 samples, of motion whos
   int wrong = 0, shown = 0;
   double sum = 0.0;
   for (int sample = 0; sample < n_samples; ++sample) {
-    Control control(rule_with({10.0}), one_sensor, minute_s);
+    Control control(desk_rule({10.0}), one_sensor_alone, a_minute_s);
     for (int day = 0; day < n_days; ++day) {
       for (int i = 0; i < rows_a_day; ++i) {
-        Sample row = row_at(minute_s * (i + 1), moves(random), 1, day);
+        Sample row = row_at(a_minute_s * (i + 1), moves(random), 1, day);
         row.clock.clear();
         control.add(row);
       }

@@ -42,16 +42,11 @@ occupants: true
 exports: [uci864, casas, energyplus]
 )";
 
-std::string content(const fs::path& file) {
+std::string unpacked(const fs::path& file) {
   io::DataReader reader(file);
   std::string text(1U << 16U, '\0'), all;
   while (const std::size_t n = reader.read(text.data(), text.size())) all.append(text, 0, n);
   return all;
-}
-std::string raw(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 std::vector<std::vector<std::string>> table(const std::string& text, char comma = ',') {
@@ -73,7 +68,7 @@ std::vector<std::vector<std::string>> table(const std::string& text, char comma 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) files[entry.path().lexically_relative(folder).string()] = raw(entry.path());
+    if (entry.is_regular_file()) files[entry.path().lexically_relative(folder).string()] = content(entry.path());
   }
   return files;
 }
@@ -181,7 +176,7 @@ TEST_CASE("the description tells each file with its hash, its columns and its pa
   const Made made;
   made.make(made.options(2));
   made.finish();
-  const auto package = nlohmann::json::parse(raw(made.out() / "datapackage.json"));
+  const auto package = nlohmann::json::parse(content(made.out() / "datapackage.json"));
   const std::vector<Part> parts = parts_of(made.recipe);
   std::set<std::string> told;
   std::size_t n_rows = 0;
@@ -198,9 +193,9 @@ TEST_CASE("the description tells each file with its hash, its columns and its pa
       INFO(path);
       CHECK(told.insert(path).second);
       const auto& whole = is_part ? resource.at("files").at(i) : resource;
-      CHECK(whole.at("hash") == "sha256:" + sha256(raw(made.out() / path)));
+      CHECK(whole.at("hash") == "sha256:" + sha256(content(made.out() / path)));
       CHECK(whole.at("bytes") == fs::file_size(made.out() / path));
-      const auto rows = table(content(made.out() / path));
+      const auto rows = table(unpacked(made.out() / path));
       CHECK(rows.front() == columns);
       for (const auto& row : rows) REQUIRE(row.size() == columns.size());
       if (!path.starts_with("rows/")) continue;
@@ -217,7 +212,7 @@ TEST_CASE("the description tells each file with its hash, its columns and its pa
   for (const auto& [file, bytes] : files_of(made.out())) {
     if (file.ends_with(".csv.gz")) CHECK(told.contains(file));
   }
-  const std::string readme = raw(made.out() / "README.md");
+  const std::string readme = content(made.out() / "README.md");
   CHECK_THAT(readme, contains("1.4 hours") && contains("4 rooms") && contains("`test_rooms`"));
 }
 
@@ -226,7 +221,7 @@ TEST_CASE("people are those who arrived and haven't left", "[dataset]") {
   made.make(made.options(2));
   int arrivals = 0;
   for (int room = 1; room <= 4; ++room) {
-    const auto rows = table(content(made.day("rows", room, 1, ".csv.gz")));
+    const auto rows = table(unpacked(made.day("rows", room, 1, ".csv.gz")));
     int there = 0;
     for (std::size_t i = 1; i < rows.size(); ++i) {
       arrivals += std::stoi(rows[i][6]);
@@ -244,12 +239,12 @@ TEST_CASE("the exports say what the rows say", "[dataset][seconds]") {
   const Made made;
   made.make(made.options(2));
   made.finish();
-  const auto rows = table(content(made.day("rows", 4, 1, ".csv.gz")));
+  const auto rows = table(unpacked(made.day("rows", 4, 1, ".csv.gz")));
   constexpr std::size_t people = 4, first_sensor = 8, n_sensors = 3, n_rows = 600;
   REQUIRE(rows.size() == n_rows + 1);
 
   SECTION("UCI 864: a reading every 30 s") {
-    const auto wide = table(raw(made.day("exports/uci864", 4, 1, ".csv")));
+    const auto wide = table(content(made.day("exports/uci864", 4, 1, ".csv")));
     CHECK(wide[0] ==
           std::vector<std::string>{"Date", "Time", "PIR1_PIR", "PIR2_PIR", "PIR3_PIR", "Room_Occupancy_Count"});
     REQUIRE(wide.size() == 1 + n_rows / 30);
@@ -269,7 +264,7 @@ TEST_CASE("the exports say what the rows say", "[dataset][seconds]") {
     std::map<std::string, std::size_t> row_at;
     for (std::size_t i = 1; i <= n_rows; ++i) row_at[rows[i][2]] = i;
     int open = 0;
-    for (const auto& event : table(raw(made.day("exports/casas", 4, 1, ".txt")), ' ')) {
+    for (const auto& event : table(content(made.day("exports/casas", 4, 1, ".txt")), ' ')) {
       REQUIRE((event.size() == 4 || event.size() == 6));  // without a label and with one
       if (event.size() == 6) open += event[5] == "begin" ? 1 : -1;
       const std::size_t sensor = static_cast<std::size_t>(event[2].back() - '1');
@@ -287,7 +282,7 @@ TEST_CASE("the exports say what the rows say", "[dataset][seconds]") {
     CHECK(on > 0);
   }
   SECTION("EnergyPlus: a year of hours") {
-    const auto year = table(raw(made.out() / "exports/energyplus/presence.csv"));
+    const auto year = table(content(made.out() / "exports/energyplus/presence.csv"));
     REQUIRE(year.size() == 8761);
     CHECK(year[0][6] == "room_0004_presence");
     double present = 0.0, all = 0.0;
@@ -392,7 +387,7 @@ TEST_CASE("a folder of another recipe is refused, and damage is told", "[dataset
   other.text += "# another\n";
   CHECK_THROWS_WITH(make_room_days(other, made.out(), made.options()), contains("another dataset"));
   const fs::path rows = made.day("rows", 2, 2, ".csv.gz");
-  std::string bytes = raw(rows);
+  std::string bytes = content(rows);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   std::ofstream(rows, std::ios::binary) << bytes;
   CHECK_THROWS_WITH(made.finish(), contains("day_02.csv.gz") && contains("isn't what was written"));
@@ -411,13 +406,13 @@ TEST_CASE("the user's own scenes are rooms like others", "[dataset][seconds]") {
   REQUIRE(told.size() == 1);  // the sensors are analog
   CHECK_THAT(to_string(told.front()), contains("recipe.yaml:6:") && contains("dual_polarity does nothing here"));
   made.finish();
-  CHECK_THAT(raw(made.out() / "sensors.csv"), contains("1,PIR1,EKMC1604111,analog,"));
-  const auto rows = table(content(made.day("rows", 1, 1, ".csv.gz")));
+  CHECK_THAT(content(made.out() / "sensors.csv"), contains("1,PIR1,EKMC1604111,analog,"));
+  const auto rows = table(unpacked(made.day("rows", 1, 1, ".csv.gz")));
   CHECK(rows.size() == 121);
   CHECK(rows[0].back() == "PIR5");
-  CHECK(raw(made.out() / "rooms.csv").find("meeting_room.gltf") != std::string::npos);
+  CHECK(content(made.out() / "rooms.csv").find("meeting_room.gltf") != std::string::npos);
   CHECK_FALSE(fs::exists(made.out() / "rooms/room_0001.gltf"));
-  CHECK_THAT(raw(made.out() / "README.md"), contains("own scenes aren't part") && contains("rooms/room_0002.gltf"));
+  CHECK_THAT(content(made.out() / "README.md"), contains("own scenes aren't part") && contains("rooms/room_0002.gltf"));
 }
 
 TEST_CASE("faults of a recipe are told with their place and the nearest name", "[dataset]") {

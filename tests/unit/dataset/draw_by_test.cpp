@@ -13,7 +13,7 @@ using namespace pirsim::dataset;
 
 namespace {
 
-RecipeSpec recipe_of(const std::string& more) {
+RecipeSpec recipe_with(const std::string& more) {
   const TemporaryFolder folder;
   return read_recipe(
       folder.write("recipe.yaml", "pirsim_recipe: 1\nseed: 5\nrooms: [{count: 4, seats: 2}]\ndays: 2\n" + more));
@@ -35,8 +35,8 @@ TEST_CASE("Rooms are drawn about as often as their weight says, and never more t
 }
 
 TEST_CASE("A room drawn by weight is the recipe's own, with other days") {
-  const RecipeSpec plain = recipe_of("effects: [range_scale]\n");
-  const RecipeSpec drawn = recipe_of("effects: [range_scale]\ndraw_by: {count: 3, weights: [0, 0, 1, 0]}\n");
+  const RecipeSpec plain = recipe_with("effects: [range_scale]\n");
+  const RecipeSpec drawn = recipe_with("effects: [range_scale]\ndraw_by: {count: 3, weights: [0, 0, 1, 0]}\n");
   REQUIRE(drawn.n_rooms() == 3);
   CHECK(drawn.n_room_days() == 6);
   const SceneSpec original = room_of(plain, 3, {});
@@ -77,6 +77,6 @@ TEST_CASE("Weights that can't be drawn by are refused at their place") {
         "draw_by: {count: 3}\n", "draw_by: {count: 3, weights: [1, 1, 1, .nan]}\n",
         "draw_by: {count: 3, weights: [1, 1, 1, 1], more: 1}\n",
         "draw_by: {count: 9, weights: [1, 1, 1, 1]}\nsplit: {test_rooms: 0.3}\n"}) {
-    CHECK_THROWS_WITH(recipe_of(text), contains("recipe.yaml:5:") || contains("recipe.yaml:6:"));
+    CHECK_THROWS_WITH(recipe_with(text), contains("recipe.yaml:5:") || contains("recipe.yaml:6:"));
   }
 }

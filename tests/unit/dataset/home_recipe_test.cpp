@@ -26,7 +26,7 @@ RecipeSpec homes(const std::string& keys) {
   return read("pirsim_recipe: 1\nrooms:\n  - {kind: home, count: 40, " + keys + "}\ndays: 2\n");
 }
 
-std::string faults_of(const std::string& keys) {
+std::string home_faults(const std::string& keys) {
   try {
     static_cast<void>(homes(keys));
   } catch (const Error& error) {
@@ -41,7 +41,7 @@ HouseholdSpec household_of(const RecipeSpec& recipe, int room, int day = 1) {
 }
 
 /// Of comma-separated text, a line a row.
-std::vector<std::vector<std::string>> table(const std::string& text) {
+std::vector<std::vector<std::string>> cells_of(const std::string& text) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -70,12 +70,6 @@ int times(const std::string& text, const std::string& part) {
   int n = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
   return n;
-}
-
-std::string content(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
 }
 
 }  // namespace
@@ -124,7 +118,7 @@ TEST_CASE("some of a recipe's residents work at home where it says so, and nobod
     CHECK(with == without);
   }
   CHECK(std::abs(at_desks - 0.3 * all) < 4.0 * std::sqrt(0.3 * 0.7 * all));
-  CHECK_THAT(faults_of("household: {works: 0.5, works_at_home: 0.6}"),
+  CHECK_THAT(home_faults("household: {works: 0.5, works_at_home: 0.6}"),
              contains("is more than 1 together with `works`"));
 }
 
@@ -158,7 +152,7 @@ rows: .csv
   CHECK_THAT(log, contains("door_bath OPEN"));
   CHECK_FALSE(std::filesystem::exists(out / "occupants"));
   // The rows have the same sensors and doors, and people by area. Lines with two labels stand twice.
-  const auto rows = table(content(out / "rows/room_0001/day_01.csv"));
+  const auto rows = cells_of(content(out / "rows/room_0001/day_01.csv"));
   std::istringstream lines(log);
   std::string once;
   for (std::string line, before; std::getline(lines, line); before = line.substr(0, line.find(" resident_"))) {
@@ -180,14 +174,15 @@ rows: .csv
 
 TEST_CASE("a dataset has columns for all that its homes have, and for nothing that none can have",
           "[dataset][home][seconds]") {
-  // Each list has all kinds that 30 homes of these ranges happen to show.
-  const char* ranges[]{"rooms: [1, 4], residents: 1, sensors_at: [room, doorway]", "rooms: 1, layout: open",
-                       "rooms: 2, layout: hall, sensors_at: doorway, own_kitchen: 0"};
-  for (const std::string keys : ranges) {
+  // Each list has all kinds that so many homes of these ranges happen to show.
+  const std::pair<const char*, int> ranges[]{{"rooms: [1, 4], residents: 1, sensors_at: [room, doorway]", 30},
+                                             {"rooms: 1, layout: open", 8},
+                                             {"rooms: 2, layout: hall, sensors_at: doorway, own_kitchen: 0", 8}};
+  for (const auto& [keys, n_homes] : ranges) {
     INFO(keys);
     const RecipeSpec recipe = homes(keys);
     std::set<std::string> areas, doors, sensors;
-    for (int room = 1; room <= 30; ++room) {
+    for (int room = 1; room <= n_homes; ++room) {
       const SceneSpec scene = room_of(recipe, room, test::shipped_sensors());
       const Areas marked(scene);
       areas.insert(marked.names().begin(), marked.names().end());
@@ -202,17 +197,17 @@ TEST_CASE("a dataset has columns for all that its homes have, and for nothing th
 }
 
 TEST_CASE("faults of homes in a recipe are told with their place and the nearest name", "[dataset][home]") {
-  CHECK(faults_of("rooms: 2").empty());
-  CHECK_THAT(faults_of("rooms: 9"), contains("r.yaml:3:36") && contains("rooms"));
-  CHECK_THAT(faults_of("seats: 2"), contains("seats"));
-  CHECK_THAT(faults_of("people: 2"), contains("`residents`"));
-  CHECK_THAT(faults_of("schedule: {from: 8}"), contains("`household`"));
-  CHECK_THAT(faults_of("first_day: 2026-02-30"), contains("r.yaml:3:") && contains("2026-02-30"));
-  CHECK_THAT(faults_of("household: {work: 1}"), contains("works"));
-  CHECK_THAT(faults_of("household: {works: 1.5}"), contains("works"));
-  CHECK_THAT(faults_of("household: {age_years: [5, 20]}"), contains("age_years"));
-  CHECK_THAT(faults_of("household: {shift_min: [-600, 0]}"), contains("shift_min"));
-  CHECK_THAT(faults_of("household: {residents: [{id: ann}]}"), contains("residents"));
-  CHECK_THAT(faults_of("household: {goes_to_bed: {mean: \"06:00\"}}"), contains("goes_to_bed"));
-  CHECK_THAT(faults_of("household: []"), contains("household"));
+  CHECK(home_faults("rooms: 2").empty());
+  CHECK_THAT(home_faults("rooms: 9"), contains("r.yaml:3:36") && contains("rooms"));
+  CHECK_THAT(home_faults("seats: 2"), contains("seats"));
+  CHECK_THAT(home_faults("people: 2"), contains("`residents`"));
+  CHECK_THAT(home_faults("schedule: {from: 8}"), contains("`household`"));
+  CHECK_THAT(home_faults("first_day: 2026-02-30"), contains("r.yaml:3:") && contains("2026-02-30"));
+  CHECK_THAT(home_faults("household: {work: 1}"), contains("works"));
+  CHECK_THAT(home_faults("household: {works: 1.5}"), contains("works"));
+  CHECK_THAT(home_faults("household: {age_years: [5, 20]}"), contains("age_years"));
+  CHECK_THAT(home_faults("household: {shift_min: [-600, 0]}"), contains("shift_min"));
+  CHECK_THAT(home_faults("household: {residents: [{id: ann}]}"), contains("residents"));
+  CHECK_THAT(home_faults("household: {goes_to_bed: {mean: \"06:00\"}}"), contains("goes_to_bed"));
+  CHECK_THAT(home_faults("household: []"), contains("household"));
 }

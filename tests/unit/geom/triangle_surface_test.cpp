@@ -11,12 +11,12 @@ using pirsim::testing::Draw;
 
 namespace {
 
-constexpr float far_away = 100.0F;
+constexpr float beyond = 100.0F;
 
-Frame somewhere(Draw& draw) { return {draw.rotation(), draw.inside({-5, 0, -5}, {5, 2, 5})}; }
+Frame anywhere(Draw& draw) { return {draw.rotation(), draw.inside({-5, 0, -5}, {5, 2, 5})}; }
 
 /// From some metres off through the surroundings of a solid.
-Ray ray_near(Draw& draw, const Frame& frame, double scatter) {
+Ray scattered_ray(Draw& draw, const Frame& frame, double scatter) {
   const Vec3 from = frame.origin + draw.between(1.0, 12.0) * draw.direction();
   return testing::ray_through(from, frame.origin + scatter * draw.between(0.0, 1.0) * draw.direction());
 }
@@ -35,12 +35,12 @@ TEST_CASE("a posed mesh is hit where a loop over its triangles in the world hits
   constexpr int n_meshes = 200, n_rays = 200;
   for (int i = 0; i < n_meshes; ++i) {
     const TriMesh mesh = testing::triangle_soup(draw, 1 + draw.index(80));
-    const Frame frame = somewhere(draw);
+    const Frame frame = anywhere(draw);
     const MeshSolid solid = testing::mesh_solid(mesh);
     const PosedShape posed = place(solid, frame);
     const TriMesh world = moved(mesh, frame);
     for (int k = 0; k < n_rays; ++k) {
-      const Ray ray = ray_near(draw, frame, 0.4);
+      const Ray ray = scattered_ray(draw, frame, 0.4);
       double expected = std::numeric_limits<double>::infinity();
       bool is_grazing = false;
       for (const auto& [a, b, c] : world.triangles) {
@@ -53,7 +53,7 @@ TEST_CASE("a posed mesh is hit where a loop over its triangles in the world hits
         ++grazed;
         continue;
       }
-      const auto distance = entry_distance(ray, posed, far_away);
+      const auto distance = entry_distance(ray, posed, beyond);
       INFO("mesh " << i << ", ray " << k << ", expected " << expected);
       REQUIRE(distance.has_value() == std::isfinite(expected));
       if (!distance) continue;
@@ -61,7 +61,7 @@ TEST_CASE("a posed mesh is hit where a loop over its triangles in the world hits
       // Seen edge-on, 1e-6 m of the origin's rounding becomes more along the ray.
       REQUIRE(*distance == Approx(expected).margin(1e-3));
       REQUIRE_FALSE(entry_distance(ray, posed, *distance).has_value());
-      const float just_beyond = std::nextafter(*distance, far_away);
+      const float just_beyond = std::nextafter(*distance, beyond);
       REQUIRE(entry_distance(ray, posed, just_beyond) == distance);
     }
   }
@@ -79,13 +79,13 @@ TEST_CASE("a fine mesh of a sphere, capsule or box is hit as the exact solid is,
   for (int i = 0; i < n_solids; ++i) {
     const Shape shape = draw.shape();
     const double fineness = testing::fineness(shape);
-    const Frame frame = somewhere(draw);
+    const Frame frame = anywhere(draw);
     const MeshSolid mesh = testing::fine_mesh(shape);
     const PosedShape exact = place(shape, frame), meshed = place(mesh, frame);
     for (int k = 0; k < n_rays; ++k) {
-      const Ray ray = ray_near(draw, frame, 0.5);
+      const Ray ray = scattered_ray(draw, frame, 0.5);
       if (testing::signed_distance(exact, Vec3(ray.origin)) < 0.01) continue;  // starts inside
-      const auto expected = entry_distance(ray, exact, far_away), given = entry_distance(ray, meshed, far_away);
+      const auto expected = entry_distance(ray, exact, beyond), given = entry_distance(ray, meshed, beyond);
       INFO("solid " << i << ", shape " << shape.index() << ", ray " << k << ", fineness " << fineness);
       hits += expected ? 1 : 0;
       if (expected.has_value() != given.has_value()) {
@@ -114,7 +114,7 @@ TEST_CASE("bounds hold every vertex of a posed mesh, and its box is the tightest
   for (int i = 0; i < 300; ++i) {
     const TriMesh mesh = testing::triangle_soup(draw, 1 + draw.index(20));
     const MeshSolid solid = testing::mesh_solid(mesh);
-    const Frame frame = somewhere(draw);
+    const Frame frame = anywhere(draw);
     const auto posed = std::get<PosedMesh>(place(solid, frame));
     const Bounds world = bounds(posed);
     const PosedBox box = box_around(posed);
@@ -136,7 +136,7 @@ TEST_CASE("the normal of a meshed sphere is the sphere's to within a face's tilt
   Draw draw(44);
   const MeshSolid mesh = testing::fine_mesh(Sphere{0.12});
   for (int i = 0; i < 2000; ++i) {
-    const Frame frame = somewhere(draw);
+    const Frame frame = anywhere(draw);
     const PosedShape posed = place(mesh, frame);
     const Vec3 outward = draw.direction();
     const Vec3f normal = surface_normal(posed, Vec3f(frame.origin + 0.12 * outward));
@@ -153,11 +153,11 @@ TEST_CASE("in the mirror x -> -x a mesh is hit at a distance of the same bits", 
   for (int i = 0; i < 200; ++i) {
     const TriMesh mesh = testing::triangle_soup(draw, 20);
     const MeshSolid solid = testing::mesh_solid(mesh), mirror = testing::mesh_solid(testing::mirrored(mesh));
-    const Frame frame = somewhere(draw);
+    const Frame frame = anywhere(draw);
     for (int k = 0; k < 100; ++k) {
-      const Ray ray = ray_near(draw, frame, 0.4);
-      const auto here = entry_distance(ray, place(solid, frame), far_away);
-      REQUIRE(entry_distance(testing::mirrored(ray), place(mirror, testing::mirrored(frame)), far_away) == here);
+      const Ray ray = scattered_ray(draw, frame, 0.4);
+      const auto here = entry_distance(ray, place(solid, frame), beyond);
+      REQUIRE(entry_distance(testing::mirrored(ray), place(mirror, testing::mirrored(frame)), beyond) == here);
       hits += here ? 1 : 0;
     }
   }

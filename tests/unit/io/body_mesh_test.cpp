@@ -23,7 +23,7 @@ struct BodyFile : GltfBuilder {
 
 const std::string one_person = "pirsim_script: 1\npeople:\n  - id: a\n    body_mesh: body.gltf\n    actions: []\n";
 
-ScriptSpec read(const GltfBuilder& body, const std::string& script = one_person) {
+ScriptSpec script_with_body(const GltfBuilder& body, const std::string& script = one_person) {
   const TemporaryFolder folder;
   folder.write("body.gltf", body.text());
   return io::read_script(folder.write("script.yaml", script));
@@ -33,7 +33,7 @@ const TriMesh& mesh_of(const ScriptSpec& script, const std::string& part) {
   return script.trials.at(0).people.at(0).body_meshes.at(part).surface->mesh();
 }
 
-double volume(const TriMesh& mesh) {
+double mesh_volume(const TriMesh& mesh) {
   double sixfold = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     sixfold += glm::dot(mesh.positions[a], glm::cross(mesh.positions[b], mesh.positions[c]));
@@ -48,7 +48,7 @@ TEST_CASE("every named mesh of a body file is its part's, in metres", "[body_mes
   file.part("torso");
   file.part("left_foot");
   file.node("empty, and of any name");
-  const ScriptSpec script = read(file);
+  const ScriptSpec script = script_with_body(file);
   const PersonSpec& person = script.trials.at(0).people.at(0);
   CHECK(person.body_mesh_file == "body.gltf");
   REQUIRE(person.body_meshes.size() == 2);
@@ -56,7 +56,7 @@ TEST_CASE("every named mesh of a body file is its part's, in metres", "[body_mes
   CHECK(torso.mesh().triangles.size() == 4);
   CHECK(glm::distance(torso.lower(), Vec3(0.0)) < 1e-7);
   CHECK(glm::distance(torso.upper(), Vec3(0.1, 0.2, 0.3)) < 1e-7);
-  CHECK(volume(mesh_of(script, "left_foot")) == Approx(0.001).epsilon(1e-5));
+  CHECK(mesh_volume(mesh_of(script, "left_foot")) == Approx(0.001).epsilon(1e-5));
 }
 
 TEST_CASE("a part's frame is its node's: where it stands doesn't count, scale and mirroring do", "[body_mesh]") {
@@ -65,13 +65,13 @@ TEST_CASE("a part's frame is its node's: where it stands doesn't count, scale an
   file.part("head", {{"translation", {0.3, 1.7, -2}}, {"rotation", turned}});
   const int scaled = file.child("right_foot", {{"mesh", file.tetrahedron}, {"scale", {-1, 1, 2}}});
   file.node("person", {{"translation", {5, 0, 0}}, {"rotation", turned}, {"scale", {2, 2, 2}}, {"children", {scaled}}});
-  const ScriptSpec script = read(file);
+  const ScriptSpec script = script_with_body(file);
   const auto& meshes = script.trials.at(0).people.at(0).body_meshes;
   CHECK(glm::distance(meshes.at("head").surface->upper(), Vec3(0.1, 0.2, 0.3)) < 1e-6);
   CHECK(glm::distance(meshes.at("head").surface->lower(), Vec3(0.0)) < 1e-6);
   CHECK(glm::distance(meshes.at("right_foot").surface->lower(), Vec3(-0.2, 0.0, 0.0)) < 1e-6);
   CHECK(glm::distance(meshes.at("right_foot").surface->upper(), Vec3(0.0, 0.4, 1.2)) < 1e-6);
-  CHECK(volume(mesh_of(script, "right_foot")) == Approx(0.016).epsilon(1e-5));  // faces still look outward
+  CHECK(mesh_volume(mesh_of(script, "right_foot")) == Approx(0.016).epsilon(1e-5));  // faces still look outward
 }
 
 TEST_CASE("trials and people share what one body file holds, and the script is written back as it was", "[body_mesh]") {
@@ -99,7 +99,7 @@ people:
 }
 
 TEST_CASE("a body file that can't be worn is refused with its place", "[body_mesh]") {
-  const auto fault = [](const GltfBuilder& file) { return fault_of([&] { return read(file); }); };
+  const auto fault = [](const GltfBuilder& file) { return fault_of([&] { return script_with_body(file); }); };
   const auto with_node = [&](const std::string& name, const json& more = json::object()) {
     BodyFile file;
     file.part(name, more);

@@ -24,7 +24,7 @@ std::string refusal_by(const auto& make) {
   return told == "accepted" ? std::string() : told;
 }
 
-std::string refusal(const auto& spec) {
+std::string refusal_to_write(const auto& spec) {
   return refusal_by([&] {
     Diagnostics diagnostics;
     check(spec, diagnostics);
@@ -152,7 +152,7 @@ int check_numbers(const Spec& whole, const std::function<Part&(Spec&)>& part_of,
     using Value = std::remove_reference_t<decltype(value)>;
     const auto try_out = [&](const auto& wrong) {
       INFO(name << ", expected " << range.text());
-      CHECK(refusal(spec).find(name) != std::string::npos);
+      CHECK(refusal_to_write(spec).find(name) != std::string::npos);
       INFO(wrong);
       CHECK_FALSE(refusal_by_file(spec).empty());
       ++tried;
@@ -201,21 +201,21 @@ int sensor_numbers(const std::function<Part&(SensorModelSpec&)>& part_of) {
 }  // namespace
 
 TEST_CASE("specs that both ways are to accept are accepted", "[both-ways]") {
-  CHECK(refusal(plain_script()).empty());
+  CHECK(refusal_to_write(plain_script()).empty());
   CHECK(refusal_of_file(plain_script()).empty());
-  CHECK(refusal(plain_schedule()).empty());
+  CHECK(refusal_to_write(plain_schedule()).empty());
   CHECK(refusal_of_file(plain_schedule()).empty());
-  CHECK(refusal(plain_scene()).empty());
+  CHECK(refusal_to_write(plain_scene()).empty());
   CHECK(refusal_of_file(plain_scene()).empty());
   CHECK(refusal_of_file(plain_scene().sensor_models.begin()->second) == "");
   CHECK_FALSE(refusal_by([] {
                 return io::parse_script("pirsim_script: 1\npeople:\n  - {id: a, actions: [~]}\n", "s.yaml");
               }).empty());
   for (const char* room : {"meeting_room.gltf", "open_office.gltf", "open_hall.gltf"}) {
-    CHECK(refusal(shipped_scene(room)).empty());
+    CHECK(refusal_to_write(shipped_scene(room)).empty());
   }
   for (const char* study : {"studyA.yaml", "office.yaml", "density.yaml"})
-    CHECK(refusal(shipped_script(study)).empty());
+    CHECK(refusal_to_write(shipped_script(study)).empty());
 }
 
 TEST_CASE("a number out of its range is refused by file and by object", "[both-ways]") {
@@ -250,7 +250,7 @@ TEST_CASE("what else a script can't be is refused by file and by object", "[both
   const auto wrong = [](ScriptSpec script, const std::string& field, const auto& change) {
     INFO(field);
     change(script);
-    CHECK(refusal(script).find(field) != std::string::npos);
+    CHECK(refusal_to_write(script).find(field) != std::string::npos);
     CHECK_FALSE(refusal_of_file(script).empty());
   };
   const ScriptSpec plain = plain_script();
@@ -316,7 +316,7 @@ TEST_CASE("what a scene can't be is refused by file and by object", "[both-ways]
     INFO(field);
     SceneSpec scene = plain_scene();
     change(scene);
-    CHECK(refusal(scene).find(field) != std::string::npos);
+    CHECK(refusal_to_write(scene).find(field) != std::string::npos);
     CHECK_FALSE(refusal_of_file(scene).empty());
   };
   const std::string with_nul("a\0b", 3);
@@ -366,7 +366,7 @@ TEST_CASE("what a sensor can't be is refused by file and by object", "[both-ways
     INFO(field);
     SceneSpec scene = plain_scene();
     change(scene.sensor_models.begin()->second);
-    CHECK(refusal(scene).find("scene.sensor_models['EKMC1604111']." + field) != std::string::npos);
+    CHECK(refusal_to_write(scene).find("scene.sensor_models['EKMC1604111']." + field) != std::string::npos);
     CHECK_FALSE(refusal_of_file(scene.sensor_models.begin()->second).empty());
   };
   wrong("id", [](SensorModelSpec& m) { m.id.clear(); });

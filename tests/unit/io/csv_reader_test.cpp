@@ -14,7 +14,7 @@ using namespace pirsim::io;
 
 namespace {
 
-std::string lines(const std::vector<Issue>& issues) {
+std::string lines_of(const std::vector<Issue>& issues) {
   std::string text;
   for (Issue issue : issues) {
     issue.where.file = "f";
@@ -22,11 +22,11 @@ std::string lines(const std::vector<Issue>& issues) {
   }
   return text;
 }
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_table(const std::string& text) {
   try {
     (void)CsvTable::parse(text, "f");
   } catch (const Error& error) {
-    return lines(error.issues());
+    return lines_of(error.issues());
   }
   return "accepted";
 }
@@ -38,7 +38,7 @@ std::string refusal_of_cells(const std::string& text) {
   try {
     (void)read_measured_cells(path);
   } catch (const Error& error) {
-    return lines(error.issues());
+    return lines_of(error.issues());
   }
   return "accepted";
 }
@@ -62,7 +62,7 @@ TEST_CASE("CSV with quotes, CRLF, a byte order mark and comments is read", "[csv
   CHECK(faults.issues().empty());
   CHECK_FALSE(table.integer(2, 2, faults));
   CHECK_FALSE(table.number(2, 1, faults));
-  CHECK(lines(faults.issues()) ==
+  CHECK(lines_of(faults.issues()) ==
         "f:7:6: error: c: expected a whole number, got '2.5'\nf:7:4: error: b \"x\": expected a number, got 'x'");
 }
 
@@ -71,17 +71,17 @@ TEST_CASE("a line that begins with a number sign is a comment before the header 
   REQUIRE(table.n_rows() == 1);
   CHECK(table.text(0, 0) == "#1");
   CHECK(table.where(0, 1) == Where{"f", 5, 4});
-  CHECK(refusal_of("id,x\n# a comment\n1,2\n") == "f:2:1: error: expected 2 fields, got 1");
+  CHECK(refusal_of_table("id,x\n# a comment\n1,2\n") == "f:2:1: error: expected 2 fields, got 1");
 }
 
 TEST_CASE("CSV that breaks the rules is refused with line and column", "[csv]") {
-  CHECK(refusal_of("") == "f:1:1: error: expected a line with column names");
-  CHECK(refusal_of("a,b\n1\n1,2,3\n") == "f:2:1: error: expected 2 fields, got 1; 1 more like this");
-  CHECK(refusal_of("a,a\n1,2\n") == "f:1:3: error: column 'a' appears twice");
-  CHECK(refusal_of("a,b\n1,\"2\n3,4\n") == "f:2:3: error: this quote is never closed");
-  CHECK(refusal_of("a,b\n1,\"2\"x\n") == "f:2:6: error: expected a comma after the closing quote");
-  CHECK(refusal_of("a,b\n1,2\"\n") == "f:2:4: error: a quote inside a field that doesn't begin with one");
-  CHECK(refusal_of("a,b\n1,2,\n") == "f:2:1: error: expected 2 fields, got 3");
+  CHECK(refusal_of_table("") == "f:1:1: error: expected a line with column names");
+  CHECK(refusal_of_table("a,b\n1\n1,2,3\n") == "f:2:1: error: expected 2 fields, got 1; 1 more like this");
+  CHECK(refusal_of_table("a,a\n1,2\n") == "f:1:3: error: column 'a' appears twice");
+  CHECK(refusal_of_table("a,b\n1,\"2\n3,4\n") == "f:2:3: error: this quote is never closed");
+  CHECK(refusal_of_table("a,b\n1,\"2\"x\n") == "f:2:6: error: expected a comma after the closing quote");
+  CHECK(refusal_of_table("a,b\n1,2\"\n") == "f:2:4: error: a quote inside a field that doesn't begin with one");
+  CHECK(refusal_of_table("a,b\n1,2,\n") == "f:2:1: error: expected 2 fields, got 3");
 }
 
 TEST_CASE("the paper's Table 1 is read whole", "[csv]") {
@@ -113,8 +113,8 @@ TEST_CASE("faults of a table of measured counts are all told", "[csv]") {
 
 TEST_CASE("a table with other separators is told so", "[csv]") {
   const std::string refusal = "f:1:1: error: columns must be separated by commas, not by semicolons or tabs";
-  CHECK(refusal_of("trial;time_s\nS1;1,5\n") == refusal);
-  CHECK(refusal_of("trial\ttime_s\nS1\t1.5\n") == refusal);
-  CHECK(refusal_of("trial\nS1\n") == "accepted");
-  CHECK(refusal_of("trial,a;b\nS1,1\n") == "accepted");
+  CHECK(refusal_of_table("trial;time_s\nS1;1,5\n") == refusal);
+  CHECK(refusal_of_table("trial\ttime_s\nS1\t1.5\n") == refusal);
+  CHECK(refusal_of_table("trial\nS1\n") == "accepted");
+  CHECK(refusal_of_table("trial,a;b\nS1,1\n") == "accepted");
 }

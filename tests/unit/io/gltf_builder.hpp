@@ -1,6 +1,7 @@
 // Small glTF files for tests, built accessor by accessor.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -125,7 +126,7 @@ struct GltfBuilder {
 };
 
 /// Message of the Error that reading throws, or "accepted".
-template <typename Read>
+template <std::invocable Read>
 std::string fault_of(Read read) {
   try {
     static_cast<void>(read());

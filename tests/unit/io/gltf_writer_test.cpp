@@ -59,11 +59,6 @@ ExportedRun some_run() {
   return run;
 }
 
-std::string content(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 tinygltf::Model read_back(const fs::path& path) {
   tinygltf::TinyGLTF reader;
   tinygltf::Model model;

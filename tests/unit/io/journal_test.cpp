@@ -35,12 +35,7 @@ Lines squares(const fs::path& file, const std::string& base, std::size_t until =
   return computed;
 }
 
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+void put(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
 }  // namespace
 
@@ -51,7 +46,7 @@ TEST_CASE("a journal cut short at any byte is continued to the same bytes", "[io
   const std::string whole = content(file);
   CHECK(whole == Journal::text({"2", {"4", "9", "16", "25", "36"}}));
   for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
-    write(file, whole.substr(0, cut));
+    put(file, whole.substr(0, cut));
     const auto sound = Journal::read(file);
     const std::size_t n = sound ? sound->pieces.size() : 0;
     CHECK(squares(file, "2").size() == n_lines - n);
@@ -69,7 +64,7 @@ TEST_CASE("lines that were altered, swapped, doubled or left out end a journal",
   const auto n_sound = [&](const Lines& some) {
     std::string text;
     for (const std::string& line : some) text += line;
-    write(file, text);
+    put(file, text);
     return Journal::read(file)->pieces.size();
   };
   CHECK(n_sound(lines) == n_lines);
@@ -88,7 +83,7 @@ TEST_CASE("what is made from something else starts anew, and a first line that i
   squares(file, "2", 3);
   CHECK(squares(file, "3").size() == n_lines);
   CHECK(Journal::read(file)->made_from == "3");
-  write(file, "a table of before\n4\n");
+  put(file, "a table of before\n4\n");
   CHECK_THROWS_WITH(Journal::read(file), contains("squares:1:1") && contains("another version of pirsim"));
 }
 

@@ -139,7 +139,7 @@ std::vector<Change> changes_in(const Truth& truth, const Texts& words) {
   return changes;
 }
 
-std::string text_of(const Case& one, const Truth& truth, Dice& dice) {
+std::string log_text(const Case& one, const Truth& truth, Dice& dice) {
   const std::size_t how = one.is_in_ms ? dice.below(2) : dice.below(3), n = one.n_sensors;
   const std::array<Texts, 3> vocabularies{Texts{"0", "1"}, Texts{"off", "on"}, Texts{"false", "true"}};
   Texts words = dice.one_of(vocabularies);
@@ -282,7 +282,7 @@ TEST_CASE("a grid of made logs: each is read rightly, or refused with a map that
     Dice dice(static_cast<std::uint32_t>(i + 1));
     const Case one = case_of(dice);
     const Truth truth = truth_of(one, dice);
-    const std::string text = text_of(one, truth, dice);
+    const std::string text = log_text(one, truth, dice);
     if (std::ranges::count(text, '\n') < 4) continue;
     auto& [read, refused, wrong] = found[form_names[static_cast<std::size_t>(one.form)]];
     const std::filesystem::path file = folder.write("log.csv", text);

@@ -23,7 +23,7 @@ Texts maps_in(const std::string& message) {
   }
   return maps;
 }
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_log(const std::string& text) {
   try {
     (void)read_log_text(text);
   } catch (const Error& error) {
@@ -35,7 +35,7 @@ std::string refusal_of(const std::string& text) {
 }
 /// Refused, and read by each of the maps that the refusal names.
 std::vector<Log> settled(const std::string& text) {
-  const std::string message = refusal_of(text);
+  const std::string message = refusal_of_log(text);
   CAPTURE(message);
   std::vector<Log> logs;
   for (const std::string& map : maps_in(message)) {
@@ -322,7 +322,7 @@ TEST_CASE("times of day that run over midnight need a date") {
   const std::string evening =
       "time,sensor,state\n21:00:00,hall_motion,off\n22:00:00,hall_motion,on\n23:00:00,hall_motion,off\n";
   CHECK(read_log_text(evening).sensors.size() == 1);
-  CHECK_THAT(refusal_of(evening + "01:00:00,hall_motion,on\n"), contains("step back over midnight"));
+  CHECK_THAT(refusal_of_log(evening + "01:00:00,hall_motion,on\n"), contains("step back over midnight"));
 }
 
 TEST_CASE("rows of changes that step back are left out, and told") {

@@ -7,7 +7,7 @@ using io::parse_stamp, io::Stamp;
 
 namespace {
 
-constexpr std::int64_t s = 1'000'000;
+constexpr std::int64_t second = 1'000'000;
 
 /// Of a text that says a moment or a time of day.
 std::int64_t us(std::string_view text, LogMap::Dates order = LogMap::Dates::found) {
@@ -21,9 +21,9 @@ std::int64_t us(std::string_view text, LogMap::Dates order = LogMap::Dates::foun
 
 TEST_CASE("moments as loggers write them") {
   // `date -u -d '2025-04-06T18:00:01Z' +%s` is 1743962401.
-  constexpr std::int64_t moment = 1743962401 * s;
+  constexpr std::int64_t moment = 1743962401 * second;
   CHECK(us("2025-04-06T18:00:01") == moment);
-  CHECK(us("2025-04-06 18:00:01.5") == moment + s / 2);
+  CHECK(us("2025-04-06 18:00:01.5") == moment + second / 2);
   CHECK(us("2025-04-06 18:00:01,345678912") == moment + 345678);
   CHECK(us("2025/04/06 18:00:01") == moment);
   CHECK(us("2025-4-6 18:00:01") == moment);
@@ -31,7 +31,7 @@ TEST_CASE("moments as loggers write them") {
   CHECK(us("04/06/2025 6:00:01 PM") == moment);
   CHECK(us("04/06/25 18:00:01", LogMap::Dates::month_first) == moment);
   CHECK(us("06/04/2025 18:00:01", LogMap::Dates::day_first) == moment);
-  CHECK(us(" 2025-04-06 18:00 ") == moment - s);
+  CHECK(us(" 2025-04-06 18:00 ") == moment - second);
   CHECK(us("2025-04-06T18:00:01.000Z") == moment);
   CHECK(us("2025-04-06T20:00:01+02:00") == moment);
   CHECK(us("2025-04-06T20:00:01 +0200") == moment);
@@ -41,16 +41,16 @@ TEST_CASE("moments as loggers write them") {
   CHECK(us("4/6/2025, 6:00:01\xE2\x80\xAFPM") == moment);
   CHECK(us("6.4.2025, 18:00:01") == moment);
   CHECK(parse_stamp("2025-04-06T20:00:01+02:00", LogMap::Dates::found)->offset_s == 7200);
-  CHECK(us("2010-11-04 00:03:50.209589") == 1288829030 * s + 209589);
+  CHECK(us("2010-11-04 00:03:50.209589") == 1288829030 * second + 209589);
 }
 
 TEST_CASE("times of day, as spreadsheets leave them") {
-  CHECK(us("0:00:34") == 34 * s);
-  CHECK(us("10:49:41 AM") == (10 * 3600 + 49 * 60 + 41) * s);
+  CHECK(us("0:00:34") == 34 * second);
+  CHECK(us("10:49:41 AM") == (10 * 3600 + 49 * 60 + 41) * second);
   CHECK(us("12:00:00 AM") == 0);
-  CHECK(us("12:30:00pm") == (12 * 3600 + 1800) * s);
-  CHECK(us("1:02") == 3720 * s);
-  CHECK(us("24:00:00") == 86400 * s);
+  CHECK(us("12:30:00pm") == (12 * 3600 + 1800) * second);
+  CHECK(us("1:02") == 3720 * second);
+  CHECK(us("24:00:00") == 86400 * second);
 }
 
 TEST_CASE("numbers, also with a decimal comma") {

@@ -32,7 +32,7 @@ struct Read {
   std::string fault;  ///< "accepted", or what the Error says; files without their folder
 };
 
-Read read(const GltfBuilder& scene, const std::string& marks) {
+Read read_marked(const GltfBuilder& scene, const std::string& marks) {
   const TemporaryFolder folder;
   const auto file = folder.write("model.gltf", scene.text()), beside = folder.write("marks.yaml", marks);
   Read result;
@@ -69,14 +69,14 @@ TEST_CASE("marks in a file make the room that marks in nodes make", "[marks]") {
                                            {{"translation", {1.5, 0.45, 0}}, {"rotation", {0, 1, 0, 0}}}));
   marked.node("door", GltfBuilder::marked({{"type", "entrance"}, {"id", "door"}, {"width_m", 1.1}},
                                           {{"translation", {0, 0, 5}}}));
-  const Read beside = read(model(), version + floor_of_10_m +
-                                        "ignore: [\"*_glass\"]\n"
-                                        "nodes: {\"Radiator_?\": {type: surface, temperature_c: 45}}\n"
-                                        "sensors:\n"
-                                        "- {id: PIR1, model: EKMC1604111, gain: 1.5, position_m: [0, 2.5, 0], "
-                                        "yaw_deg: 90, tilt_deg: 90}\n"
-                                        "seats: [{id: 7, position_m: [1.5, 0.45, 0], direction: [0, 0, 3]}]\n"
-                                        "entrances: [{id: door, width_m: 1.1, position_m: [0, 0, 5]}]\n");
+  const Read beside = read_marked(model(), version + floor_of_10_m +
+                                               "ignore: [\"*_glass\"]\n"
+                                               "nodes: {\"Radiator_?\": {type: surface, temperature_c: 45}}\n"
+                                               "sensors:\n"
+                                               "- {id: PIR1, model: EKMC1604111, gain: 1.5, position_m: [0, 2.5, 0], "
+                                               "yaw_deg: 90, tilt_deg: 90}\n"
+                                               "seats: [{id: 7, position_m: [1.5, 0.45, 0], direction: [0, 0, 3]}]\n"
+                                               "entrances: [{id: door, width_m: 1.1, position_m: [0, 0, 5]}]\n");
   REQUIRE(beside.fault == "accepted");
   const SceneSpec inside = marked.read();
   CHECK(beside.scene.warnings.size() == inside.warnings.size());
@@ -99,7 +99,7 @@ TEST_CASE("unit, axis and origin of a model lead to the room as by hand", "[mark
     GltfBuilder scene;
     const int point = scene.mesh(scene.positions({100, 200, 300, 101, 200, 300, 100, 201, 300}));
     scene.node("piece", {{"mesh", point}});
-    const Read given = read(scene, version + keys + floor_of_10_m);
+    const Read given = read_marked(scene, version + keys + floor_of_10_m);
     INFO(given.fault);
     REQUIRE(given.scene.meshes.size() == 1);
     return given.scene.meshes[0].positions[0];
@@ -117,7 +117,8 @@ TEST_CASE("unit, axis and origin of a model lead to the room as by hand", "[mark
 TEST_CASE("a model's own marks hold beside those of a file, and go with its unit", "[marks]") {
   GltfBuilder scene = model();
   scene.node("chair", GltfBuilder::marked({{"type", "seat"}, {"id", "S1"}}, {{"translation", {200, 45, -100}}}));
-  const Read given = read(scene, version + floor_of_10_m + "unit: cm\nseats: [{id: S2, position_m: [0, 0.45, 0]}]\n");
+  const Read given =
+      read_marked(scene, version + floor_of_10_m + "unit: cm\nseats: [{id: S2, position_m: [0, 0.45, 0]}]\n");
   REQUIRE(given.fault == "accepted");
   REQUIRE(given.scene.seats.size() == 2);
   check_vector(given.scene.seats[0].world_from_seat.origin, {2, 0.45, -1});
@@ -125,7 +126,7 @@ TEST_CASE("a model's own marks hold beside those of a file, and go with its unit
 }
 
 TEST_CASE("what is ignored isn't loaded, with all that is below it", "[marks]") {
-  const Read given = read(model(), version + floor_of_10_m + "ignore: [front*, Desk]\n");
+  const Read given = read_marked(model(), version + floor_of_10_m + "ignore: [front*, Desk]\n");
   REQUIRE(given.fault == "accepted");
   REQUIRE(given.scene.meshes.size() == 1);
   CHECK(given.scene.meshes[0].name == "Radiator_1");
@@ -135,7 +136,7 @@ TEST_CASE("a floor may be a mesh of the model", "[marks]") {
   GltfBuilder scene;
   scene.node("Slab.001", {{"mesh", scene.mesh(scene.positions({0, 0, 0, 0, 0, -3, 4, 0, -3, 4, 0, 0}),
                                               scene.indices<std::uint16_t>({0, 2, 1, 0, 3, 2}))}});
-  const Read given = read(scene, version + "nodes: {Slab*: {type: floor}}\n");
+  const Read given = read_marked(scene, version + "nodes: {Slab*: {type: floor}}\n");
   REQUIRE(given.fault == "accepted");
   CHECK(given.scene.floor.area_m2() == Approx(12.0));
 }
@@ -143,8 +144,8 @@ TEST_CASE("a floor may be a mesh of the model", "[marks]") {
 TEST_CASE("a direction is that of view, straight down too", "[marks]") {
   const auto forward = [](const std::string& direction) {
     const Read given =
-        read(model(), version + floor_of_10_m + "sensors: [{id: P, model: EKMC1604111, position_m: [0, 2, 0], " +
-                          direction + "}]\n");
+        read_marked(model(), version + floor_of_10_m + "sensors: [{id: P, model: EKMC1604111, position_m: [0, 2, 0], " +
+                                 direction + "}]\n");
     INFO(given.fault);
     return given.scene.sensors.at(0).world_from_sensor.forward();
   };
@@ -155,7 +156,7 @@ TEST_CASE("a direction is that of view, straight down too", "[marks]") {
 }
 
 TEST_CASE("every fault of marks has its place and the nearest name", "[marks]") {
-  const auto fault = [](const std::string& text) { return read(model(), version + text).fault; };
+  const auto fault = [](const std::string& text) { return read_marked(model(), version + text).fault; };
   using Catch::Matchers::Contains;
   CHECK_THAT(
       fault(floor_of_10_m + "ignore: [radiator_1, Desc]\n"),
@@ -198,13 +199,13 @@ TEST_CASE("two marks of one id or one node are told with both places", "[marks]"
   GltfBuilder scene = model();
   scene.node("chair", GltfBuilder::marked({{"type", "seat"}, {"id", "S1"}}, {{"translation", {2, 0.45, -1}}}));
   using Catch::Matchers::Contains;
-  CHECK_THAT(read(scene, version + floor_of_10_m + "seats: [{id: S1, position_m: [0, 0.45, 0]}]\n").fault,
+  CHECK_THAT(read_marked(scene, version + floor_of_10_m + "seats: [{id: S1, position_m: [0, 0.45, 0]}]\n").fault,
              Contains("marks.yaml:3:14: error: seat 'S1': seat id 'S1' is taken by node 'chair' in model.gltf:"));
-  CHECK_THAT(read(scene, version + floor_of_10_m + "nodes: {chair: {type: ignore}}\n").fault,
+  CHECK_THAT(read_marked(scene, version + floor_of_10_m + "nodes: {chair: {type: ignore}}\n").fault,
              Contains("marks.yaml:3:16: error: nodes: 'chair': node 'chair' has a mark of its own in model.gltf:"));
   scene.root["nodes"][0]["extras"]["pirsim"] = {{"type", "surface"}, {"temperature_c", 45}};
   CHECK_THAT(
-      read(scene, version + floor_of_10_m + "ignore: [D*]\n").fault,
+      read_marked(scene, version + floor_of_10_m + "ignore: [D*]\n").fault,
       Contains("marks.yaml:3:10: error: ignore: 'D*': node 'Desk' has a mark that needs its mesh in model.gltf:"));
 }
 
@@ -213,7 +214,8 @@ TEST_CASE("a hidden node's mark in a file is told, and ignoring it is silent", "
   scene.root["nodes"][1]["extensions"]["KHR_node_visibility"] = {{"visible", false}};
   const auto warnings = [&](const std::string& text) {
     std::string all;
-    for (const pirsim::Issue& issue : read(scene, version + floor_of_10_m + text).scene.warnings) all += issue.message;
+    for (const pirsim::Issue& issue : read_marked(scene, version + floor_of_10_m + text).scene.warnings)
+      all += issue.message;
     return all;
   };
   using Catch::Matchers::Contains;
@@ -230,7 +232,7 @@ TEST_CASE("patterns match as globs do", "[marks]") {
   const auto left = [&](const std::string& pattern) {
     std::string names;
     for (const pirsim::TriMesh& mesh :
-         read(scene, version + floor_of_10_m + "ignore: [\"" + pattern + "\"]\n").scene.meshes)
+         read_marked(scene, version + floor_of_10_m + "ignore: [\"" + pattern + "\"]\n").scene.meshes)
       names += mesh.name + ' ';
     return names;
   };

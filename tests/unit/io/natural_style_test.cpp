@@ -21,15 +21,15 @@ std::string script(const std::string& style) {
          "      - {work: {duration_s: 60}}\n";
 }
 
-ScriptSpec read(const std::string& text) {
+ScriptSpec read_style(const std::string& text) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "s.yaml") << text;
   return io::read_script(folder.path() / "s.yaml");
 }
 
-std::string fault(const std::string& text) {
+std::string style_fault(const std::string& text) {
   try {
-    static_cast<void>(read(text));
+    static_cast<void>(read_style(text));
   } catch (const Error& error) {
     return error.what();
   }
@@ -49,33 +49,33 @@ void check_activities(const PersonSpec& person) {
 }  // namespace
 
 TEST_CASE("people of natural style say what they are busy with, and walk faster than the paper's") {
-  const ScriptSpec natural = read(script("    style: natural\n"));
+  const ScriptSpec natural = read_style(script("    style: natural\n"));
   check_activities(natural.trials.front().people.front());
   CHECK(natural.trials.front().people.front().walking_speed_m_s == 1.2);
-  CHECK(read(script("    style: natural\n    walking_speed_m_s: 0.9\n"))
+  CHECK(read_style(script("    style: natural\n    walking_speed_m_s: 0.9\n"))
             .trials.front()
             .people.front()
             .walking_speed_m_s == 0.9);
-  check_activities(read(io::to_yaml(natural)).trials.front().people.front());
+  check_activities(read_style(io::to_yaml(natural)).trials.front().people.front());
 }
 
 TEST_CASE("an activity that nobody would see is refused with its line, and so is an unknown one") {
   for (const char* style : {"", "    style: choreographed\n"}) {
-    const std::string text = fault(script(style));
+    const std::string text = style_fault(script(style));
     CHECK_THAT(text, contains("needs `style: natural`"));
     CHECK_THAT(text, contains(*style == '\0' ? "s.yaml:6:" : "s.yaml:7:"));
     CHECK_THAT(text, contains(*style == '\0' ? "s.yaml:7:" : "s.yaml:8:"));
   }
   std::string text = script("    style: natural\n");
   text.replace(text.find("whiteboard"), 10, "blackboard");
-  CHECK_THAT(fault(text), contains("blackboard"));
+  CHECK_THAT(style_fault(text), contains("blackboard"));
 }
 
 TEST_CASE("an action refuses the activities of others, and lists its own") {
   const auto told = [](const std::string& was, const std::string& is) {
     std::string text = script("    style: natural\n");
     text.replace(text.find(was), was.size(), is);
-    return fault(text);
+    return style_fault(text);
   };
   CHECK_THAT(told("activity: reading", "activity: whiteboard"),
              contains("s.yaml:11:") && contains("activity: expected one of typing, reading, meeting, phone, got"));

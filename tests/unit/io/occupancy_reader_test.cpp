@@ -33,8 +33,8 @@ OccupancySpec occupancy_of(const std::string& data, const std::string& occupancy
   return *Files(data).script(occupancy, more).trials.front().occupancy;
 }
 
-void refused(const std::string& data, const std::string& message, const std::string& occupancy = "counts: c.csv",
-             const std::string& more = "") {
+void refused_occupancy(const std::string& data, const std::string& message,
+                       const std::string& occupancy = "counts: c.csv", const std::string& more = "") {
   INFO(data << occupancy);
   CHECK_THROWS_WITH(occupancy_of(data, occupancy, more), contains(message));
 }
@@ -86,37 +86,47 @@ TEST_CASE("Counts of areas are columns of the same file") {
   CHECK((all.areas[1].area == "bath" && all.areas[1].people == std::vector{0, 1}));
   // With a total, the rest is elsewhere.
   CHECK(occupancy_of("time,people,k,b\n0,5,1,0\n9,1,1,0\n", keys).counts->people == std::vector{5, 1});
-  refused("time,people,k,b\n0,1,1,1\n", "c.csv:2:3: error: 2 people are in areas, but only 1 in all", keys);
-  refused("time,k\n0,1\n", "column 'b' is missing", keys);
-  refused("time,k,b\n0,1,0\n0,0,1\n", "c.csv:3:1: error: other numbers of areas for the same time", keys);
-  refused("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}", "counts: c.csv, areas: [k]");
-  refused("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}", "counts: c.csv, areas: {}");
+  refused_occupancy("time,people,k,b\n0,1,1,1\n", "c.csv:2:3: error: 2 people are in areas, but only 1 in all", keys);
+  refused_occupancy("time,k\n0,1\n", "column 'b' is missing", keys);
+  refused_occupancy("time,k,b\n0,1,0\n0,0,1\n", "c.csv:3:1: error: other numbers of areas for the same time", keys);
+  refused_occupancy("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}",
+                    "counts: c.csv, areas: [k]");
+  refused_occupancy("time,k,b\n0,1,0\n", "expected each area's column, {kitchen: people_kitchen}",
+                    "counts: c.csv, areas: {}");
 }
 
 TEST_CASE("What is wrong with counts is told with its line and column") {
-  refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,-1\n", "c.csv:3:18: error: expected a number of people");
-  refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,1.5\n", "c.csv:3:18: error: expected a number of people");
-  refused("time,people\n2026-03-02T07:00,0\n2026-03-02T06:59,1\n", "c.csv:3:1: error: time runs backwards");
-  refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:00,1\n", "c.csv:3:18: error: another number for the same");
-  refused("time,people\n2026-03-02T07:00,0\n34,1\n", "c.csv:3:1: error: expected a local date and time");
-  refused("time,people\n1,0\nnoon,1\nnight,1\n",
-          "c.csv:3:1: error: expected seconds, or a local date and time, e.g. "
-          "2026-03-02T07:00:00, got 'noon'; 1 more like this");
-  refused("time,people\n", "c.csv:1:1: error: expected at least one reading");
-  refused("when,people\n1,0\n", "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are when, people");
-  refused("time,n\n1,0\n", "which column tells the number of people? Say `people: COLUMN` in the script; there are");
-  refused("time,people\n1,0\n", "column 'peple' is missing (did you mean 'people'?)", "counts: c.csv, people: peple");
-  refused("replicate,time_s,people\n1,1,0\n1,2,0\n2,1,0\n", "c.csv:4:1: error: rows of more than one run");
-  refused("time,people\n1,0\n", "s.yaml:2:21: error: occupancy: there is no file", "counts: nowhere.csv");
-  refused("time,people\n1,0\n2,5000\n", "expected a number of people, 0 to 1000, got '5000'");
+  refused_occupancy("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,-1\n",
+                    "c.csv:3:18: error: expected a number of people");
+  refused_occupancy("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,1.5\n",
+                    "c.csv:3:18: error: expected a number of people");
+  refused_occupancy("time,people\n2026-03-02T07:00,0\n2026-03-02T06:59,1\n", "c.csv:3:1: error: time runs backwards");
+  refused_occupancy("time,people\n2026-03-02T07:00,0\n2026-03-02T07:00,1\n",
+                    "c.csv:3:18: error: another number for the same");
+  refused_occupancy("time,people\n2026-03-02T07:00,0\n34,1\n", "c.csv:3:1: error: expected a local date and time");
+  refused_occupancy("time,people\n1,0\nnoon,1\nnight,1\n",
+                    "c.csv:3:1: error: expected seconds, or a local date and time, e.g. "
+                    "2026-03-02T07:00:00, got 'noon'; 1 more like this");
+  refused_occupancy("time,people\n", "c.csv:1:1: error: expected at least one reading");
+  refused_occupancy("when,people\n1,0\n",
+                    "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are when, people");
+  refused_occupancy("time,n\n1,0\n",
+                    "which column tells the number of people? Say `people: COLUMN` in the script; there are");
+  refused_occupancy("time,people\n1,0\n", "column 'peple' is missing (did you mean 'people'?)",
+                    "counts: c.csv, people: peple");
+  refused_occupancy("replicate,time_s,people\n1,1,0\n1,2,0\n2,1,0\n", "c.csv:4:1: error: rows of more than one run");
+  refused_occupancy("time,people\n1,0\n", "s.yaml:2:21: error: occupancy: there is no file", "counts: nowhere.csv");
+  refused_occupancy("time,people\n1,0\n2,5000\n", "expected a number of people, 0 to 1000, got '5000'");
 }
 
 TEST_CASE("Nobody is in two places at once") {
-  refused("time_s,person,seat\n1,a,S1\n1,b,S2\n2,a,S1\n2,a,S3\n2,b,S2\n",
-          "c.csv:5:1: error: 'a' has another row of this time: nobody is in two places at once", "places: c.csv");
-  refused("time_s,person,seat\n1,a,S1\n2,,S2\n", "c.csv:3:3: error: person: expected a name", "places: c.csv");
-  refused("time_s,id,x,z,x_m\n1,a,3,-1,3\n", "columns 'x_m' and 'x' mean the same", "positions: c.csv");
-  refused("time_s,id,x,z\n1,a,3,-1\n2,,3,-1\n", "c.csv:3:3: error: id: expected a name", "positions: c.csv");
+  refused_occupancy("time_s,person,seat\n1,a,S1\n1,b,S2\n2,a,S1\n2,a,S3\n2,b,S2\n",
+                    "c.csv:5:1: error: 'a' has another row of this time: nobody is in two places at once",
+                    "places: c.csv");
+  refused_occupancy("time_s,person,seat\n1,a,S1\n2,,S2\n", "c.csv:3:3: error: person: expected a name",
+                    "places: c.csv");
+  refused_occupancy("time_s,id,x,z,x_m\n1,a,3,-1,3\n", "columns 'x_m' and 'x' mean the same", "positions: c.csv");
+  refused_occupancy("time_s,id,x,z\n1,a,3,-1\n2,,3,-1\n", "c.csv:3:3: error: id: expected a name", "positions: c.csv");
   CHECK(occupancy_of("time_s,person,seat\n1,a,S1\n1,b,S1\n2,a,S1\n3,a,S2\n", "places: c.csv").places->stays.size() ==
         3);
   ScriptSpec script = script_of({});
@@ -129,18 +139,24 @@ TEST_CASE("Nobody is in two places at once") {
 
 TEST_CASE("What can't be in an occupancy is refused with its place") {
   const std::string hour = "time,people\n2026-03-02T07:00,0\n2026-03-02T08:00,2\n";
-  refused(hour, "s.yaml:2:13: error: occupancy: unknown key 'count' (did you mean 'counts'?)", "count: c.csv");
-  refused(hour, "s.yaml:2:12: error: occupancy: expected one of `counts`, `places` and `positions`", "style: natural");
-  refused(hour, "occupancy: 1 different people, but up to 2 are there at once", "counts: c.csv, persons: 1");
-  refused(hour, "`to` is not after `from`", "counts: c.csv, from: '09:00', to: '08:00'");
-  refused(hour, "the data have no reading between `from` and `to` of any day", "counts: c.csv, from: '10:00'");
-  refused("time,people\n0,0\n10,1\n", "the data have seconds alone: add `begin`", "counts: c.csv, from: '10:00'");
-  refused(hour, "say when runs begin: leave out `begin`", "counts: c.csv, from: '06:00'", "begin: 2026-03-02T07:00\n");
-  refused(hour, "the data end at 2026-03-02T08:00:00, and the run begins at 2026-03-02T09:00:00", "counts: c.csv",
-          "begin: 2026-03-02T09:00\n");
-  refused(hour, "a schedule says who is there as well: leave out one of them", "counts: c.csv",
-          "schedule: {staff: [{count: 1}]}\n");
-  refused("time,people\n2026-01-01T00:00,0\n2026-12-31T00:00,1\n", "the data last for 364 days, and a run at most 115");
+  refused_occupancy(hour, "s.yaml:2:13: error: occupancy: unknown key 'count' (did you mean 'counts'?)",
+                    "count: c.csv");
+  refused_occupancy(hour, "s.yaml:2:12: error: occupancy: expected one of `counts`, `places` and `positions`",
+                    "style: natural");
+  refused_occupancy(hour, "occupancy: 1 different people, but up to 2 are there at once", "counts: c.csv, persons: 1");
+  refused_occupancy(hour, "`to` is not after `from`", "counts: c.csv, from: '09:00', to: '08:00'");
+  refused_occupancy(hour, "the data have no reading between `from` and `to` of any day",
+                    "counts: c.csv, from: '10:00'");
+  refused_occupancy("time,people\n0,0\n10,1\n", "the data have seconds alone: add `begin`",
+                    "counts: c.csv, from: '10:00'");
+  refused_occupancy(hour, "say when runs begin: leave out `begin`", "counts: c.csv, from: '06:00'",
+                    "begin: 2026-03-02T07:00\n");
+  refused_occupancy(hour, "the data end at 2026-03-02T08:00:00, and the run begins at 2026-03-02T09:00:00",
+                    "counts: c.csv", "begin: 2026-03-02T09:00\n");
+  refused_occupancy(hour, "a schedule says who is there as well: leave out one of them", "counts: c.csv",
+                    "schedule: {staff: [{count: 1}]}\n");
+  refused_occupancy("time,people\n2026-01-01T00:00,0\n2026-12-31T00:00,1\n",
+                    "the data last for 364 days, and a run at most 115");
 }
 
 TEST_CASE("A run goes from the first reading to the last, from `begin`, or is one of the days that have readings") {

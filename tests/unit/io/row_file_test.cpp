@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t n_runs = 6;
 const std::string header = "replicate,trial,PIR1\n";
 
-std::string rows_of(std::uint32_t run) {
+std::string few_rows(std::uint32_t run) {
   std::string text;
   for (std::uint32_t i = 0; i <= run % 3; ++i) text += std::to_string(run) + ",S" + std::to_string(i) + ",1\n";
   return text;
@@ -27,7 +27,7 @@ std::string rows_of(std::uint32_t run) {
 
 std::string whole() {
   std::string text = header;
-  for (std::uint32_t run = 0; run < n_runs; ++run) text += rows_of(run);
+  for (std::uint32_t run = 0; run < n_runs; ++run) text += few_rows(run);
   return text;
 }
 
@@ -42,18 +42,13 @@ io::Manifest made(std::uint64_t seed = 1) {
   return manifest;
 }
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
 /// Goes on from what is there up to, not including, run `until`.
 void work(const fs::path& file, Start start, std::uint32_t until = n_runs) {
   io::RowFile rows(file, made(), header, start);
   if (rows.finished()) return;
-  while (rows.next_run() < until) rows.add_run(rows_of(rows.next_run()), rows.next_run() % 3 + 1);
+  while (rows.next_run() < until) rows.add_run(few_rows(rows.next_run()), rows.next_run() % 3 + 1);
   if (until == n_runs) rows.commit();
 }
 
@@ -130,7 +125,7 @@ TEST_CASE("a file that lacks only its manifest is not computed again", "[io][row
   work(file, Start::anew, 5);
   {
     io::RowFile rows(file, made(), header, Start::resume);
-    rows.add_run(rows_of(5), 3);
+    rows.add_run(few_rows(5), 3);
   }
   fs::rename(folder.path() / "rows.csv.partial", file);  // and then it was killed
   {
@@ -222,7 +217,7 @@ TEST_CASE("two at work on one file is one too many", "[io][row_file]") {
 TEST_CASE("what has no sense is discarded", "[io][row_file]") {
   const TemporaryFolder folder;
   io::RowFile rows(folder.path() / "rows.csv", made(), header, Start::anew);
-  rows.add_run(rows_of(0), 1);
+  rows.add_run(few_rows(0), 1);
   CHECK_THROWS_AS(rows.commit(), Error);
   rows.discard();
   CHECK(files_in(folder.path()) == 0);
@@ -246,12 +241,12 @@ TEST_CASE("a run that failed has no rows, costs no other run any, and is told af
       if (rows.finished()) continue;
       while (rows.next_run() < end) {
         const std::uint32_t run = rows.next_run();
-        rows.add_run(run == 2 ? "" : rows_of(run), run == 2 ? 0 : run % 3 + 1, notes_of(run));
+        rows.add_run(run == 2 ? "" : few_rows(run), run == 2 ? 0 : run % 3 + 1, notes_of(run));
       }
       if (end == n_runs) rows.commit();
     }
     std::string expected = header;
-    for (const std::uint32_t run : {0U, 1U, 3U, 4U, 5U}) expected += rows_of(run);
+    for (const std::uint32_t run : {0U, 1U, 3U, 4U, 5U}) expected += few_rows(run);
     CHECK(content(file) == expected);
     const io::RunNotes told = io::read_manifest(io::manifest_path(file)).notes;
     REQUIRE(told.failed.size() == 1);

@@ -17,7 +17,7 @@ std::vector<Sample> all_of(const std::string& text) {
   while (reader.next_of_all(row)) rows.push_back(row);
   return rows;
 }
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_rows(const std::string& text) {
   try {
     all_of(text);
   } catch (const Error& error) {
@@ -27,7 +27,7 @@ std::string refusal_of(const std::string& text) {
   return "accepted";
 }
 
-const std::string header = "replicate,trial,time_s,people,people_hall,door_front,A,B\n";
+const std::string wide_header = "replicate,trial,time_s,people,people_hall,door_front,A,B\n";
 
 }  // namespace
 
@@ -57,7 +57,7 @@ TEST_CASE("what pirsim log writes are rows of one run", "[rows]") {
 }
 
 TEST_CASE("missing rows are unknown, and runs stay runs", "[rows]") {
-  const std::string text = header +
+  const std::string text = wide_header +
                            "1,a,30,1,1,0,1,0\n1,a,60,1,1,0,1,0\n1,a,150,1,1,0,1,0\n1,a,180,1,1,0,1,0\n"
                            "2,a,300,1,1,0,1,0\n2,a,330,1,1,0,1,0\n2,b,30,1,1,0,1,0\n";
   const std::vector<Sample> rows = all_of(text);
@@ -102,8 +102,8 @@ TEST_CASE("a row's clock goes on as its seconds do, but for summer time", "[rows
   CHECK(all_of(of("2026-03-29T03:30:00")).size() == 3);
   CHECK(all_of(of("2026-03-29T01:30:00")).size() == 3);
   for (const std::string moment : {"2026-03-30T02:30:00", "2026-03-29T02:31:00", "2026-03-28T02:30:00"})
-    CHECK_THAT(refusal_of(of(moment)), contains("f:4:6: error: time is"));
-  CHECK_THAT(refusal_of("time_s,time,A\n1,2026-02-30T08:00:01,1\n"), contains("f:2:3: error: time: expected"));
+    CHECK_THAT(refusal_of_rows(of(moment)), contains("f:4:6: error: time is"));
+  CHECK_THAT(refusal_of_rows("time_s,time,A\n1,2026-02-30T08:00:01,1\n"), contains("f:2:3: error: time: expected"));
 }
 
 TEST_CASE("a sensor that a room of a dataset hasn't got isn't one without motion", "[rows]") {
@@ -119,13 +119,13 @@ TEST_CASE("a sensor that a room of a dataset hasn't got isn't one without motion
   CHECK(rows[2].bits == std::vector<std::uint8_t>{unknown_bit, absent_bit});  // missing
   for (const std::size_t i : {0U, 1U, 2U, 3U}) CHECK(rows[i].people_of_areas == std::vector<int>{absent_people});
   CHECK(rows[4].bits == std::vector<std::uint8_t>{0, 1});
-  CHECK_THAT(refusal_of("room,day,time_s,people,A,B\n1,1,1,0,0,\n1,1,2,0,0,1\n"),
+  CHECK_THAT(refusal_of_rows("room,day,time_s,people,A,B\n1,1,1,0,0,\n1,1,2,0,0,1\n"),
              contains("f:3:11: error: B: its field"));
 }
 
 TEST_CASE("what is no row is refused with line and column, each kind once", "[rows]") {
   const auto with = [](const std::string& line) {
-    return refusal_of(header + "1,a,1,0,0,0,0,0\n1,a,2,0,0,0,0,0\n" + line);
+    return refusal_of_rows(wide_header + "1,a,1,0,0,0,0,0\n1,a,2,0,0,0,0,0\n" + line);
   };
   for (const std::string bit : {"2", "-1", "0.5", "x", "1 ", "true", "nan"})
     CHECK(with("1,a,3,0,0,0,0," + bit + "\n") == "f:4:15: error: B: expected 0 or 1, got '" + bit + "'");
@@ -142,39 +142,40 @@ TEST_CASE("what is no row is refused with line and column, each kind once", "[ro
   CHECK(with("1,a,3,0,0,0,2,0\n1,a,4,0,0,0,0,3\n1,a,5,-1,0,0,0,0\n") ==
         "f:4:13: error: A: expected 0 or 1, got '2'; 1 more like this\n"
         "f:6:7: error: people: expected a number of people, got '-1'");
-  CHECK_THAT(refusal_of("time_s,time,A\n1,10:00,0\n"), contains("f:2:3: error: time: expected a local time"));
-  CHECK_THAT(refusal_of("time_s,time,A\n1,2026-03-02T08:00:01,0\n2,,0\n"), contains("f:3:3: error: time: expected"));
+  CHECK_THAT(refusal_of_rows("time_s,time,A\n1,10:00,0\n"), contains("f:2:3: error: time: expected a local time"));
+  CHECK_THAT(refusal_of_rows("time_s,time,A\n1,2026-03-02T08:00:01,0\n2,,0\n"),
+             contains("f:3:3: error: time: expected"));
 }
 
 TEST_CASE("rows that don't ascend by one step are refused", "[rows]") {
   const std::string begin = "replicate,trial,time_s,A\n1,a,10,0\n1,a,20,0\n1,a,30,0\n";
-  CHECK(refusal_of(begin + "1,a,30,0\n") == "f:5:5: error: time_s doesn't grow: 30 after 30");
-  CHECK(refusal_of(begin + "1,a,20,0\n") == "f:5:5: error: time_s doesn't grow: 20 after 30");
-  CHECK_THAT(refusal_of(begin + "1,a,45,0\n"),
+  CHECK(refusal_of_rows(begin + "1,a,30,0\n") == "f:5:5: error: time_s doesn't grow: 30 after 30");
+  CHECK(refusal_of_rows(begin + "1,a,20,0\n") == "f:5:5: error: time_s doesn't grow: 20 after 30");
+  CHECK_THAT(refusal_of_rows(begin + "1,a,45,0\n"),
              contains("f:5:5: error: rows are 10 s apart, and this one comes 15 s after"));
-  CHECK_THAT(refusal_of(begin + "1,a,31,0\n"),
+  CHECK_THAT(refusal_of_rows(begin + "1,a,31,0\n"),
              contains("f:5:5: error: rows are 10 s apart, and this one comes 1 s after"));
-  CHECK_THAT(refusal_of(begin + "2,a,10,0\n1,a,40,0\n"),
+  CHECK_THAT(refusal_of_rows(begin + "2,a,10,0\n1,a,40,0\n"),
              contains("f:6:1: error: this row is of a run whose rows have ended"));
-  CHECK_THAT(refusal_of(begin + "1,a,1e12,0\n"), contains("too long a gap"));
+  CHECK_THAT(refusal_of_rows(begin + "1,a,1e12,0\n"), contains("too long a gap"));
   std::string longer = begin;
   for (int i = 1; i <= 4; ++i) longer += "1,b," + std::to_string(10 * i) + ",0\n";
   for (int i = 1; i <= 4; ++i) longer += "1,b," + std::to_string(40 + 60 * i) + ",0\n";
-  CHECK_THAT(refusal_of(longer), contains("f:11:5: error: rows are 10 s apart at first and 60 s here"));
-  CHECK(refusal_of(begin + "1,a,90,0\n1,a,100,0\n1,a,160,0\n1,a,170,0\n1,a,230,0\n") == "accepted");
+  CHECK_THAT(refusal_of_rows(longer), contains("f:11:5: error: rows are 10 s apart at first and 60 s here"));
+  CHECK(refusal_of_rows(begin + "1,a,90,0\n1,a,100,0\n1,a,160,0\n1,a,170,0\n1,a,230,0\n") == "accepted");
 }
 
 TEST_CASE("columns of rows are checked once", "[rows]") {
-  CHECK(refusal_of("") == "f:1:1: error: expected a line with column names");
-  CHECK_THAT(refusal_of("time,A\n"), contains("f:1:1: error: these aren't rows of a run or a dataset"));
-  CHECK(refusal_of("time_s,A,A\n") == "f:1:10: error: column 'A' appears twice");
-  CHECK(refusal_of("time_s,people\n1,0\n") == "f:1:1: error: none of the columns is a sensor's");
-  CHECK(refusal_of("time_s,peple,A\n1,0,0\n") == "f:1:8: error: unknown column 'peple' (did you mean 'people'?)");
-  CHECK(refusal_of("Time_s,A\n1,0\n") == "f:1:1: error: unknown column 'Time_s' (did you mean 'time_s'?)");
-  CHECK(refusal_of("time_s,seat,trial,A\n1,a,a,0\n") ==
+  CHECK(refusal_of_rows("") == "f:1:1: error: expected a line with column names");
+  CHECK_THAT(refusal_of_rows("time,A\n"), contains("f:1:1: error: these aren't rows of a run or a dataset"));
+  CHECK(refusal_of_rows("time_s,A,A\n") == "f:1:10: error: column 'A' appears twice");
+  CHECK(refusal_of_rows("time_s,people\n1,0\n") == "f:1:1: error: none of the columns is a sensor's");
+  CHECK(refusal_of_rows("time_s,peple,A\n1,0,0\n") == "f:1:8: error: unknown column 'peple' (did you mean 'people'?)");
+  CHECK(refusal_of_rows("Time_s,A\n1,0\n") == "f:1:1: error: unknown column 'Time_s' (did you mean 'time_s'?)");
+  CHECK(refusal_of_rows("time_s,seat,trial,A\n1,a,a,0\n") ==
         "f:1:8: error: columns 'trial' and 'seat' mean the same: give one of them");
-  CHECK_THAT(refusal_of(",time_s,A\n0,1,0\n"), contains("f:1:1: error: a column without a name"));
-  CHECK_THAT(refusal_of("time_s;A\n1;0\n"), contains("separated by commas"));
+  CHECK_THAT(refusal_of_rows(",time_s,A\n0,1,0\n"), contains("f:1:1: error: a column without a name"));
+  CHECK_THAT(refusal_of_rows("time_s;A\n1;0\n"), contains("separated by commas"));
   for (const std::string sensor : {"seat1", "room_2", "days", "time2", "trials_3"})
-    CHECK(refusal_of("time_s," + sensor + "\n1,0\n") == "accepted");
+    CHECK(refusal_of_rows("time_s," + sensor + "\n1,0\n") == "accepted");
 }

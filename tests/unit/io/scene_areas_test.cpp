@@ -14,18 +14,18 @@ json area(const std::string& id, double x0, double z0, double x1, double z1) {
 }
 
 /// The floor of 10 m x 10 m around the origin with these marks.
-GltfBuilder scene_with(const std::vector<json>& marks) {
+GltfBuilder scene_of_areas(const std::vector<json>& marks) {
   GltfBuilder scene;
   scene.floor();
   for (const json& mark : marks) scene.node("a " + mark.value("type", ""), GltfBuilder::marked(mark));
   return scene;
 }
-std::string fault(const std::vector<json>& marks) {
-  return fault_of([&] { return scene_with(marks).read(); });
+std::string area_fault(const std::vector<json>& marks) {
+  return fault_of([&] { return scene_of_areas(marks).read(); });
 }
 std::string warnings(const std::vector<json>& marks) {
   std::string text;
-  for (const Issue& issue : scene_with(marks).read().warnings) text += to_string(issue) + '\n';
+  for (const Issue& issue : scene_of_areas(marks).read().warnings) text += to_string(issue) + '\n';
   return text;
 }
 
@@ -33,7 +33,7 @@ json sensor(const std::string& id) { return {{"type", "sensor"}, {"id", id}, {"m
 
 /// In words, of a sensor that hangs at (x, z) and looks along the heading, between two areas that meet at x = 0.
 std::string watched_from(double x, double z, double yaw_deg, const std::string& said = "", double tilt_deg = 20.0) {
-  SceneSpec scene = scene_with({area("left", -5, -5, 0, 5), area("right", 0, -5, 4, 5)}).read();
+  SceneSpec scene = scene_of_areas({area("left", -5, -5, 0, 5), area("right", 0, -5, 4, 5)}).read();
   SensorSpec spec{"PIR", "EKMC1604111", mounted({x, 2.0, z}, yaw_deg, tilt_deg)};
   if (!said.empty()) spec.area = said;
   scene.sensors = {spec};
@@ -61,31 +61,34 @@ TEST_CASE("areas are read from polygons and from flat meshes, which hide nothing
 }
 
 TEST_CASE("what of the floor is in no area is a part of its own", "[scene]") {
-  const SceneSpec spec = scene_with({area("kitchen", -5, -5, 0, 5)}).read();
+  const SceneSpec spec = scene_of_areas({area("kitchen", -5, -5, 0, 5)}).read();
   CHECK(Areas(spec).names() == std::vector<std::string>{"kitchen", "elsewhere"});
   CHECK(Areas(spec).areas_m2() == std::vector<double>{50.0, 50.0});
-  CHECK(Areas(scene_with({}).read()).empty());
+  CHECK(Areas(scene_of_areas({}).read()).empty());
 }
 
 TEST_CASE("faulty areas are refused with their names, one line each", "[scene]") {
   const json kitchen = area("kitchen", -5, -5, 0, 5);
-  CHECK_THAT(fault({kitchen, area("hall", -1, 0, 5, 5)}), contains("area 'hall' overlaps area 'kitchen' by 5.00 m2"));
-  CHECK_THAT(fault({{{"type", "area"}, {"id", "hall"}}}),
+  CHECK_THAT(area_fault({kitchen, area("hall", -1, 0, 5, 5)}),
+             contains("area 'hall' overlaps area 'kitchen' by 5.00 m2"));
+  CHECK_THAT(area_fault({{{"type", "area"}, {"id", "hall"}}}),
              contains("an area needs a mesh at its node, or 'polygon_xz_m'"));
-  CHECK_THAT(fault({{{"type", "area"}, {"id", "hall"}, {"polygon_xz_m", {{0, 0}, {2, 2}, {2, 0}, {0, 2}}}}}),
+  CHECK_THAT(area_fault({{{"type", "area"}, {"id", "hall"}, {"polygon_xz_m", {{0, 0}, {2, 2}, {2, 0}, {0, 2}}}}}),
              contains("the outline of the area crosses itself"));
-  CHECK_THAT(fault({{{"type", "area"}, {"id", "hall"}, {"polygon_xz_m", {{0, 0}, {2, 2}}}}}), contains("three points"));
-  CHECK_THAT(fault({area("hall", 6, 0, 8, 2)}), contains("area 'hall' lies off the floor"));
-  CHECK_THAT(fault({kitchen, area("kitchen", 0, 0, 1, 1)}), contains("area id 'kitchen' is taken by"));
-  CHECK_THAT(fault({{{"type", "area"}, {"polygon_xz_m", {{0, 0}, {2, 0}, {2, 2}}}}}), contains("area without 'id'"));
-  CHECK_THAT(fault({area("time_s", 0, 0, 1, 1)}), contains("area id 'time_s' is the name of a column of rows"));
-  CHECK_THAT(fault({area("elsewhere", 0, 0, 1, 1)}), contains("the floor that is in no area"));
-  CHECK_THAT(fault({sensor("people_kitchen"), kitchen}), contains("begins as the columns of areas do: 'people_'"));
+  CHECK_THAT(area_fault({{{"type", "area"}, {"id", "hall"}, {"polygon_xz_m", {{0, 0}, {2, 2}}}}}),
+             contains("three points"));
+  CHECK_THAT(area_fault({area("hall", 6, 0, 8, 2)}), contains("area 'hall' lies off the floor"));
+  CHECK_THAT(area_fault({kitchen, area("kitchen", 0, 0, 1, 1)}), contains("area id 'kitchen' is taken by"));
+  CHECK_THAT(area_fault({{{"type", "area"}, {"polygon_xz_m", {{0, 0}, {2, 0}, {2, 2}}}}}),
+             contains("area without 'id'"));
+  CHECK_THAT(area_fault({area("time_s", 0, 0, 1, 1)}), contains("area id 'time_s' is the name of a column of rows"));
+  CHECK_THAT(area_fault({area("elsewhere", 0, 0, 1, 1)}), contains("the floor that is in no area"));
+  CHECK_THAT(area_fault({sensor("people_kitchen"), kitchen}), contains("begins as the columns of areas do: 'people_'"));
   json watcher = sensor("PIR1");
   watcher["area"] = "kitchn";
-  CHECK_THAT(fault({kitchen, watcher}), contains("there is no area 'kitchn' (did you mean 'kitchen'?)"));
-  CHECK_THAT(fault({watcher}), contains("there is no area 'kitchn': the scene has none"));
-  GltfBuilder high = scene_with({});
+  CHECK_THAT(area_fault({kitchen, watcher}), contains("there is no area 'kitchn' (did you mean 'kitchen'?)"));
+  CHECK_THAT(area_fault({watcher}), contains("there is no area 'kitchn': the scene has none"));
+  GltfBuilder high = scene_of_areas({});
   high.node("up", GltfBuilder::marked(kitchen, {{"translation", {0, 0.5, 0}}}));
   CHECK_THAT(fault_of([&] { return high.read(); }), contains("area 'kitchen' lies 0.50 m above the floor"));
 }

@@ -11,13 +11,13 @@ using namespace pirsim::test;
 
 namespace {
 
-json sensor(const std::string& id, const std::string& model = "EKMC1604111") {
+json sensor_mark(const std::string& id, const std::string& model = "EKMC1604111") {
   return {{"type", "sensor"}, {"id", id}, {"model", model}};
 }
 
 json polygon_floor(const json& points) { return {{"type", "floor"}, {"polygon_xz_m", points}}; }
 
-std::string fault(const GltfBuilder& scene) {
+std::string markup_fault(const GltfBuilder& scene) {
   return fault_of([&] { return scene.read(); });
 }
 
@@ -27,8 +27,8 @@ TEST_CASE("sensors keep their order and look along -Z with +Y up, whatever the s
   const double h = std::sqrt(0.5);
   GltfBuilder scene;
   scene.floor();
-  const int a = scene.child("a", GltfBuilder::marked(sensor("Z9"), {{"translation", {1, 2, 3}}}));
-  const int b = scene.child("b", GltfBuilder::marked(sensor("A1"), {{"rotation", {-h, 0, 0, h}}}));
+  const int a = scene.child("a", GltfBuilder::marked(sensor_mark("Z9"), {{"translation", {1, 2, 3}}}));
+  const int b = scene.child("b", GltfBuilder::marked(sensor_mark("A1"), {{"rotation", {-h, 0, 0, h}}}));
   scene.node("parent", {{"children", {a, b}}, {"scale", {2, 3, 4}}, {"rotation", {0, h, 0, h}}});
   const SceneSpec spec = scene.read();
   REQUIRE(spec.sensors.size() == 2);
@@ -47,7 +47,7 @@ TEST_CASE("a mirrored sensor looks the mirrored way and stays a right-handed fra
   GltfBuilder scene;
   scene.floor();
   const double s = std::sin(0.25), c = std::cos(0.25);  // 0.5 rad to the left
-  const int child = scene.child("eye", GltfBuilder::marked(sensor("PIR1"), {{"rotation", {0, s, 0, c}}}));
+  const int child = scene.child("eye", GltfBuilder::marked(sensor_mark("PIR1"), {{"rotation", {0, s, 0, c}}}));
   scene.node("mirror", {{"children", {child}}, {"scale", {-1, 1, 1}}});
   const SceneSpec spec = scene.read();
   const pirsim::Frame& frame = spec.sensors.at(0).world_from_sensor;
@@ -77,7 +77,7 @@ TEST_CASE("markup may come as a text, as editors with custom properties write it
   scene.node("chair", GltfBuilder::marked("{\"type\": \"seat\", \"id\": \"S1\"}"));
   CHECK(scene.read().seats.at(0).id == "S1");
   scene.node("broken", GltfBuilder::marked("{\"type\": \"seat\""));
-  CHECK_THAT(fault(scene), contains("node 'broken': the text at 'pirsim' is not valid JSON: it ends too early"));
+  CHECK_THAT(markup_fault(scene), contains("node 'broken': the text at 'pirsim' is not valid JSON: it ends too early"));
 }
 
 TEST_CASE("a floor mesh bounds the floor and occludes unless it says otherwise, ignored meshes do neither", "[scene]") {
@@ -110,27 +110,27 @@ TEST_CASE("floors side by side are joined, floors that overlap, differ in height
   }
   SECTION("the same twice") {
     scene.node("again", GltfBuilder::marked(polygon_floor({{0, 0}, {2, 0}, {2, 3}, {0, 3}})));
-    CHECK_THAT(fault(scene), contains("node 'again' overlaps the floor of node 'left'"));
+    CHECK_THAT(markup_fault(scene), contains("node 'again' overlaps the floor of node 'left'"));
   }
   SECTION("one shifted along a common edge") {
     scene.node("shifted", GltfBuilder::marked(polygon_floor({{1, 0}, {3, 0}, {3, 3}, {1, 3}})));
-    CHECK_THAT(fault(scene), contains("overlaps"));
+    CHECK_THAT(markup_fault(scene), contains("overlaps"));
   }
   SECTION("one within the other") {
     scene.node("within", GltfBuilder::marked(polygon_floor({{0.5, 0.5}, {1, 0.5}, {1, 1}})));
-    CHECK_THAT(fault(scene), contains("overlaps"));
+    CHECK_THAT(markup_fault(scene), contains("overlaps"));
   }
   SECTION("another height") {
     scene.node("step", GltfBuilder::marked(polygon_floor({{3, 0}, {4, 0}, {4, 1}}), {{"translation", {0, 0.3, 0}}}));
-    CHECK_THAT(fault(scene), contains("different heights"));
+    CHECK_THAT(markup_fault(scene), contains("different heights"));
   }
   SECTION("a bow tie") {
     scene.node("tie", GltfBuilder::marked(polygon_floor({{5, 0}, {6, 1}, {6, 0}, {5, 1}})));
-    CHECK_THAT(fault(scene), contains("node 'tie': the outline of the floor crosses itself"));
+    CHECK_THAT(markup_fault(scene), contains("node 'tie': the outline of the floor crosses itself"));
   }
   SECTION("a slope") {
     scene.node("ramp", GltfBuilder::marked(polygon_floor({{5, 0}, {6, 0}, {6, 1}}), {{"rotation", {0.6, 0, 0, 0.8}}}));
-    CHECK_THAT(fault(scene), contains("must be flat and level"));
+    CHECK_THAT(markup_fault(scene), contains("must be flat and level"));
   }
 }
 
@@ -139,9 +139,9 @@ TEST_CASE("a number out of its range is told with the ends that there are, and i
     GltfBuilder scene;
     scene.floor();
     scene.node("a", GltfBuilder::marked(std::move(mark)));
-    return fault(scene);
+    return markup_fault(scene);
   };
-  json loud = sensor("PIR1");
+  json loud = sensor_mark("PIR1");
   loud["gain"] = 0;
   CHECK_THAT(told(loud), contains("'gain' must be a number above 0.0 to 100.0"));
   CHECK_THAT(told({{"type", "entrance"}, {"id", "door"}, {"width_m", 0.1}}),
@@ -153,8 +153,8 @@ TEST_CASE("every fault of a scene is told, not only the first", "[scene]") {
   scene.floor();
   scene.node("a", GltfBuilder::marked({{"type", "seat"}}));
   scene.node("b", GltfBuilder::marked({{"type", "sensro"}, {"id", "PIR1"}}));
-  scene.node("c", GltfBuilder::marked(sensor("PIR1", "EKMC1604112")));
-  const std::string told = fault(scene);
+  scene.node("c", GltfBuilder::marked(sensor_mark("PIR1", "EKMC1604112")));
+  const std::string told = markup_fault(scene);
   CHECK_THAT(told, contains("node 'a': seat without 'id'"));
   CHECK_THAT(told, contains("unknown type 'sensro' (did you mean 'sensor'?)"));
   CHECK_THAT(told, contains("sensor model 'EKMC1604112' is not known (did you mean 'EKMC1604111'?)"));
@@ -164,10 +164,10 @@ TEST_CASE("ids that can't name a column or a file are refused", "[scene]") {
   for (const std::string id : {"", "a,b", "../x", ".hidden", "a\nb", "\"q\""}) {
     GltfBuilder scene;
     scene.floor();
-    scene.node("eye", GltfBuilder::marked(sensor(id)));
-    CHECK_THAT(fault(scene), contains("it needs letters, digits"));
-    scene.root["nodes"][1]["extras"]["pirsim"] = sensor("PIR1", id);
-    CHECK_THAT(fault(scene), contains("it needs letters, digits"));
+    scene.node("eye", GltfBuilder::marked(sensor_mark(id)));
+    CHECK_THAT(markup_fault(scene), contains("it needs letters, digits"));
+    scene.root["nodes"][1]["extras"]["pirsim"] = sensor_mark("PIR1", id);
+    CHECK_THAT(markup_fault(scene), contains("it needs letters, digits"));
   }
 }
 
@@ -175,7 +175,7 @@ TEST_CASE("sensor files are looked for in the given folders before those beside 
           "[scene]") {
   GltfBuilder scene;
   scene.floor();
-  scene.node("eye", GltfBuilder::marked(sensor("PIR1")));
+  scene.node("eye", GltfBuilder::marked(sensor_mark("PIR1")));
   const TemporaryFolder folder;
   const auto file = folder.write("rooms/room.gltf", scene.text());
   const auto read = [&] { return pirsim::io::read_scene(file); };
@@ -269,18 +269,18 @@ TEST_CASE("a node has a matrix or translation, rotation and scale, not both", "[
   GltfBuilder scene;
   scene.floor();
   scene.node("both", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}, {"scale", {2, 2, 2}}});
-  CHECK_THAT(fault(scene), contains("node 'both': it has both 'matrix' and 'scale'"));
+  CHECK_THAT(markup_fault(scene), contains("node 'both': it has both 'matrix' and 'scale'"));
 }
 
 TEST_CASE("of thousands of faults the first are told, and soon", "[scene]") {
   GltfBuilder scene;
   scene.floor();
   for (int i = 0; i < 20000; ++i) scene.node("n", GltfBuilder::marked({{"type", "seat"}}));
-  const std::string told = fault(scene);
+  const std::string told = markup_fault(scene);
   CHECK(std::count(told.begin(), told.end(), '\n') == 19);
   json repeated = json::array();
   for (int i = 0; i < 200000; ++i) repeated.push_back(1);
   scene.root["nodes"] = {{{"name", "a"}}, {{"name", "b"}, {"children", repeated}}};
   scene.root["scenes"][0]["nodes"] = {0, 1};
-  CHECK_THAT(fault(scene), contains("node 'b' is its own ancestor or has two parents"));
+  CHECK_THAT(markup_fault(scene), contains("node 'b' is its own ancestor or has two parents"));
 }

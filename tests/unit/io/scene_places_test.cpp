@@ -23,7 +23,7 @@ void furnish(GltfBuilder& scene, double length_m = 2.0) {
 }
 json at(double x, double y, double z) { return {{"translation", {x, y, z}}}; }
 
-std::string doubts(const GltfBuilder& scene) {
+std::string doubts_of_places(const GltfBuilder& scene) {
   std::string text;
   for (const pirsim::Issue& issue : scene.read().warnings) {
     if (issue.message != "the scene has no sensors") text += to_string(issue) + '\n';
@@ -61,7 +61,7 @@ TEST_CASE("places are read with posture and uses, and one to sit is a seat", "[s
   REQUIRE(read.seats.size() == 1);
   CHECK(read.seats[0].id == "sofa");
   CHECK(read.seats[0].uses == std::vector<std::string>{"tv"});
-  CHECK(doubts(scene).empty());
+  CHECK(doubts_of_places(scene).empty());
 }
 
 TEST_CASE("faulty places are refused with the nearest word", "[scene]") {
@@ -85,37 +85,37 @@ TEST_CASE("a place in the air, in a wall, too short a bed and two at one spot ar
   GltfBuilder air;
   furnish(air);
   air.node("bed", GltfBuilder::marked(place("bed", "lie"), at(3, 0.5, 0)));
-  CHECK_THAT(doubts(air), contains("place 'bed' is in the air"));
+  CHECK_THAT(doubts_of_places(air), contains("place 'bed' is in the air"));
 
   GltfBuilder wall;
   furnish(wall);
   const int corners = wall.positions({-2, 0, 0.3, 2, 0, 0.3, 2, 2.5, 0.3, -2, 2.5, 0.3});
   wall.node("partition", {{"mesh", wall.mesh(corners, wall.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}))}});
   wall.node("bed", GltfBuilder::marked(place("bed", "lie"), at(0, 0.5, 0)));
-  CHECK_THAT(doubts(wall), contains("place 'bed': 'partition' goes through whoever lies there"));
+  CHECK_THAT(doubts_of_places(wall), contains("place 'bed': 'partition' goes through whoever lies there"));
 
   GltfBuilder cot;
   furnish(cot, 1.2);
   cot.node("bed", GltfBuilder::marked(place("bed", "lie"), at(0, 0.5, 0.1)));
-  CHECK_THAT(doubts(cot), contains("place 'bed': nothing is under the head"));
+  CHECK_THAT(doubts_of_places(cot), contains("place 'bed': nothing is under the head"));
 
   GltfBuilder turned;
   furnish(turned);
   turned.node("bed", GltfBuilder::marked(place("bed", "lie"), at(0, 0.5, -0.3)));
-  CHECK_THAT(doubts(turned), contains("nothing is under the feet"));
+  CHECK_THAT(doubts_of_places(turned), contains("nothing is under the feet"));
 
   GltfBuilder two;
   furnish(two);
   two.node("one", GltfBuilder::marked(place("one", "lie"), at(0, 0.5, 0)));
   two.node("two", GltfBuilder::marked(place("two", "lie"), at(0.2, 0.5, 0)));
-  CHECK_THAT(doubts(two), contains("place 'two' is 0.20 m from place 'one': two would lie in each other"));
+  CHECK_THAT(doubts_of_places(two), contains("place 'two' is 0.20 m from place 'one': two would lie in each other"));
 
   GltfBuilder high;
   furnish(high);
   high.node("stove", GltfBuilder::marked(place("stove", "stand"), at(3, 0.9, 0)));
-  CHECK_THAT(doubts(high), contains("place 'stove' isn't on the floor, but 0.90 m above it"));
+  CHECK_THAT(doubts_of_places(high), contains("place 'stove' isn't on the floor, but 0.90 m above it"));
   GltfBuilder off;
   furnish(off);
   off.node("stove", GltfBuilder::marked(place("stove", "stand", {{"as_meant", true}}), at(30, 0, 0)));
-  CHECK(doubts(off).empty());
+  CHECK(doubts_of_places(off).empty());
 }

@@ -56,7 +56,7 @@ SensorModelSpec model_of(const std::string& text) {
   return io::read_sensor_model(path);
 }
 /// All faults, one a line, with the file called f.
-std::string refusal_of(const std::string& text) {
+std::string refusal_of_sensor(const std::string& text) {
   std::string message;
   try {
     (void)model_of(text);
@@ -176,7 +176,7 @@ TEST_CASE("a facet whose outermost zone isn't one alone can't miss it", "[sensor
            "facets:\n  - {x_m: " +
            x_m + ", y_m: 1, zone_side_m: 0.1, range_m: 3, missing: outer}\n";
   };
-  CHECK(refusal_of(facet("0")).find("two are equally far off the axis") != std::string::npos);
+  CHECK(refusal_of_sensor(facet("0")).find("two are equally far off the axis") != std::string::npos);
   CHECK(model_of(facet("0.5")).clusters.front().zones.size() == 3);
 }
 
@@ -253,10 +253,10 @@ TEST_CASE("a dome's zones end where its field of view does and left is as right"
 
 TEST_CASE("a dome's numbers need sources, and make sense", "[sensor]") {
   CHECK(model_of(dome_file("")).clusters.size() == 29);
-  CHECK(refusal_of(dome_file("lenses: 0, wide_deg: 90")).find("dome: lenses: expected") != std::string::npos);
-  CHECK(refusal_of(dome_file("lenses: 9, wide_deg: 180")).find("dome: wide_deg: expected") != std::string::npos);
-  CHECK(refusal_of("id: X\nrange_m: 4\ndome: {lenses: 9, wide_deg: 90}\n"
-                   "sources: {range_m: 'quoted: a', lenses: 'quoted: a'}\n") ==
+  CHECK(refusal_of_sensor(dome_file("lenses: 0, wide_deg: 90")).find("dome: lenses: expected") != std::string::npos);
+  CHECK(refusal_of_sensor(dome_file("lenses: 9, wide_deg: 180")).find("dome: wide_deg: expected") != std::string::npos);
+  CHECK(refusal_of_sensor("id: X\nrange_m: 4\ndome: {lenses: 9, wide_deg: 90}\n"
+                          "sources: {range_m: 'quoted: a', lenses: 'quoted: a'}\n") ==
         "f:3:19: error: 'wide_deg' has no entry under 'sources'");
 }
 
@@ -280,18 +280,21 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
   const std::string head =
       "id: X\nplane_m: 2\nsources: {plane_m: 'assumed: a', range_m: 'assumed: b', x_m: 'assumed: a', "
       "y_m: 'assumed: a', corners_m: 'assumed: c', zone_side_m: 'assumed: a', pitch_m: 'assumed: a'}\n";
-  CHECK(refusal_of(head) == "f:1:1: error: sensor: expected one of 'facets', 'clusters' and 'dome'");
-  CHECK(refusal_of(head + "layout: square\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: 1, pitch_m: 2, range: 3}\n") ==
+  CHECK(refusal_of_sensor(head) == "f:1:1: error: sensor: expected one of 'facets', 'clusters' and 'dome'");
+  CHECK(refusal_of_sensor(head +
+                          "layout: square\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: 1, pitch_m: 2, range: 3}\n") ==
         "f:6:50: error: facet: unknown key 'range' (did you mean 'range_m'?)");
-  CHECK(refusal_of(head + "layout: squere\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: -1, pitch_m: 2, range_m: 3}\n") ==
+  CHECK(refusal_of_sensor(head +
+                          "layout: squere\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: -1, pitch_m: 2, range_m: 3}\n") ==
         "f:4:9: error: sensor: layout: expected one of diamond, square, got 'squere' (did you mean 'square'?)\n"
         "f:6:35: error: facet: zone_side_m: expected a finite number >= 0.001 and <= 1000, got '-1'");
-  CHECK(refusal_of(head + "clusters:\n  - range_m: 1\n    zones: [corners_m: [[0, 0], [1, 1], [1, 0], [0, 1]]]\n") ==
+  CHECK(refusal_of_sensor(head +
+                          "clusters:\n  - range_m: 1\n    zones: [corners_m: [[0, 0], [1, 1], [1, 0], [0, 1]]]\n") ==
         "f:6:24: error: zone: corners_m: expected the corners of a convex area in order round it");
-  CHECK(refusal_of("id: X\nplane_m: 2\nsources: {}\nclusters:\n  - range_m: 1\n"
-                   "    zones: [corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]]\n")
+  CHECK(refusal_of_sensor("id: X\nplane_m: 2\nsources: {}\nclusters:\n  - range_m: 1\n"
+                          "    zones: [corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]]\n")
             .find("f:2:1: error: 'plane_m' has no entry under 'sources'") == 0);
-  CHECK(refusal_of("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
+  CHECK(refusal_of_sensor("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
             .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
 }
 
@@ -334,7 +337,7 @@ TEST_CASE("a file's element, amplifier and comparator are read and what it leave
   CHECK(model.detector.comparator.pulse_signs == PulseSigns::alternating);
   CHECK(model.detector.report.hold_s == 7.0);
   CHECK(model.detector.report.blind_s == 0.0);
-  CHECK(refusal_of(zones + "element: {thermal_s: 0.5}\n" + sources + "}\n") ==
+  CHECK(refusal_of_sensor(zones + "element: {thermal_s: 0.5}\n" + sources + "}\n") ==
         "f:7:11: error: 'thermal_s' has no entry under 'sources'");
 }
 
@@ -354,13 +357,13 @@ TEST_CASE("a file's rated targets and sensitivity are read, and refused for lens
   CHECK(model.sensitivity.mean == 1.36);
   CHECK(model.sensitivity.sd == 0.1);
   CHECK(model_of(zones + sources).sensitivity.mean == 1.0);
-  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{lens_step: 2, zones: 1, width_m: 0.2}]\n") ==
+  CHECK(refusal_of_sensor(zones + sources + sensitivity + "targets: [{lens_step: 2, zones: 1, width_m: 0.2}]\n") ==
         "f:9:10: error: targets: no facet is of lens step 2");
-  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}, {zones: 2}]\n") ==
+  CHECK(refusal_of_sensor(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}, {zones: 2}]\n") ==
         "f:9:10: error: targets: lens step 1 has two targets");
-  CHECK(refusal_of(zones + sources + sensitivity + "targets: [{zones: 3, width_m: 0.2}]\n") != "");
-  CHECK(refusal_of(zones + "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c'}\n" +
-                   "targets: [{zones: 1}]\n") == "f:8:12: error: 'zones' has no entry under 'sources'");
+  CHECK(refusal_of_sensor(zones + sources + sensitivity + "targets: [{zones: 3, width_m: 0.2}]\n") != "");
+  CHECK(refusal_of_sensor(zones + "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c'}\n" +
+                          "targets: [{zones: 1}]\n") == "f:8:12: error: 'zones' has no entry under 'sources'");
 }
 
 TEST_CASE("detectors that could never work are refused with their place", "[sensor]") {
@@ -368,16 +371,16 @@ TEST_CASE("detectors that could never work are refused with their place", "[sens
       "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n"
       "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', low_hz: 'assumed: d', "
       "high_hz: 'assumed: d', pulse_count: 'assumed: d', positive_v: 'assumed: d', offset_v: 'assumed: d'}\n";
-  CHECK(refusal_of(zones + "amplifier: {low_hz: 3, high_hz: 2}\n") ==
+  CHECK(refusal_of_sensor(zones + "amplifier: {low_hz: 3, high_hz: 2}\n") ==
         "f:8:33: error: amplifier: expected high_hz above low_hz");
-  CHECK(refusal_of(zones + "amplifier: {offset_v: 0.2}\n") ==
+  CHECK(refusal_of_sensor(zones + "amplifier: {offset_v: 0.2}\n") ==
         "f:8:23: error: amplifier: expected offset_v between lowest_v and highest_v");
-  CHECK(refusal_of(zones + "comparator: {pulse_count: 2}\n") ==
+  CHECK(refusal_of_sensor(zones + "comparator: {pulse_count: 2}\n") ==
         "f:8:27: error: comparator: several pulses need a pulse_window_s");
-  CHECK(refusal_of(zones + "comparator: {positive_v: 0.8}\n") ==
+  CHECK(refusal_of_sensor(zones + "comparator: {positive_v: 0.8}\n") ==
         "f:8:13: error: comparator: the output saturates before it reaches a threshold");
-  CHECK(refusal_of(zones + "report: {hold: 2}\n").find("hold_s") != std::string::npos);
-  CHECK(refusal_of(zones + "comparator: {hold_s: 2}\n") ==
+  CHECK(refusal_of_sensor(zones + "report: {hold: 2}\n").find("hold_s") != std::string::npos);
+  CHECK(refusal_of_sensor(zones + "comparator: {hold_s: 2}\n") ==
         "f:8:22: error: comparator: 'hold_s' stands under 'report' beside 'comparator'\n"
         "f:8:14: error: 'hold_s' has no entry under 'sources'");
 }

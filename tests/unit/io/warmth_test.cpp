@@ -34,7 +34,7 @@ std::string fault_with_material(const json& material) {
   return fault_of([&] { return scene.read(); });
 }
 
-ScriptSpec script(const std::string& person) {
+ScriptSpec warm_script(const std::string& person) {
   const TemporaryFolder folder;
   return io::read_script(folder.write("s.yaml", "pirsim_script: 1\npeople:\n  - {id: a, " + person + "}\n"));
 }
@@ -166,7 +166,7 @@ TEST_CASE("people vanish in air as warm as their skin and are cooler than warmer
 
 TEST_CASE("a script tells how warm its people are and writes it back", "[script][warmth]") {
   const ScriptSpec read =
-      script("warmth: {skin_c: 35, clothing_clo: 0.5, bare: [head], hair_share: 0.2, parts_c: {torso: 27}}");
+      warm_script("warmth: {skin_c: 35, clothing_clo: 0.5, bare: [head], hair_share: 0.2, parts_c: {torso: 27}}");
   const WarmthSpec& warmth = read.trials.at(0).people.at(0).warmth;
   CHECK(warmth.skin_c == 35.0);
   CHECK(warmth.hair_share == 0.2);
@@ -174,6 +174,6 @@ TEST_CASE("a script tells how warm its people are and writes it back", "[script]
   CHECK(warmth.bare == std::vector<std::string>{"head"});
   CHECK(warmth.parts_c == std::map<std::string, double>{{"torso", 27.0}});
   CHECK_THAT(io::to_yaml(read), contains("torso: 27"));
-  CHECK_THAT(fault_of([] { return script("warmth: {bare: [haed]}"); }), contains("did you mean"));
-  CHECK_THAT(fault_of([] { return script("warmth: {parts_c: {trunk: 27}}"); }), contains("trunk"));
+  CHECK_THAT(fault_of([] { return warm_script("warmth: {bare: [haed]}"); }), contains("did you mean"));
+  CHECK_THAT(fault_of([] { return warm_script("warmth: {parts_c: {trunk: 27}}"); }), contains("trunk"));
 }

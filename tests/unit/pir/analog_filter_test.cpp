@@ -13,7 +13,7 @@ using pir::AnalogFilter;
 
 namespace {
 
-DetectorSpec silent(int order) {
+DetectorSpec silent_filter(int order) {
   DetectorSpec spec;
   spec.amplifier.order = order;
   spec.amplifier.noise_v_pp = 0.0;
@@ -83,7 +83,7 @@ double gain_of_bounded_input(const DetectorSpec& spec) {
 }  // namespace
 
 TEST_CASE("a step of power answers as the four poles say") {
-  const DetectorSpec spec = silent(1);
+  const DetectorSpec spec = silent_filter(1);
   const Poles poles = poles_of(spec);
   for (const double tick_s : {0.002, 0.02, 0.1}) {
     const std::vector<double> volts = response(spec, sampled([](double t) { return t > 0.0; }, tick_s, 5.0), tick_s);
@@ -96,7 +96,7 @@ TEST_CASE("a step of power answers as the four poles say") {
 }
 
 TEST_CASE("with a wide amplifier a step answers as the element's two poles") {
-  DetectorSpec spec = silent(1);
+  DetectorSpec spec = silent_filter(1);
   spec.amplifier.low_hz = 1e-6;
   spec.amplifier.high_hz = 1e5;
   const double fast = 1.0 / spec.element.thermal_s, slow = 1.0 / spec.element.electrical_s, tick_s = 1e-3;
@@ -110,7 +110,7 @@ TEST_CASE("with a wide amplifier a step answers as the element's two poles") {
 TEST_CASE("a sine comes out with the gain and the phase of the transfer function") {
   constexpr double tick_s = 0.02, seconds = 40.0;
   for (const int order : {1, 2, 3}) {
-    const DetectorSpec spec = silent(order);
+    const DetectorSpec spec = silent_filter(order);
     for (const double f_hz : {0.1, 0.59, 1.2, 2.4, 6.5}) {
       const double omega = 2.0 * pi * f_hz;
       const std::vector<double> volts =
@@ -127,7 +127,7 @@ TEST_CASE("a sine comes out with the gain and the phase of the transfer function
 
 TEST_CASE("the amplifier's edges lose 3 dB at its corners whatever its order") {
   for (const int order : {1, 2, 3}) {
-    DetectorSpec spec = silent(order);
+    DetectorSpec spec = silent_filter(order);
     spec.amplifier.high_hz = 1e5;
     const auto amplifier = [&](double f_hz) {
       const std::complex<double> s(0.0, 2.0 * pi * f_hz);
@@ -139,7 +139,7 @@ TEST_CASE("the amplifier's edges lose 3 dB at its corners whatever its order") {
 }
 
 TEST_CASE("halving the tick changes nothing for a power that goes in straight lines between ticks") {
-  const DetectorSpec spec = silent(2);
+  const DetectorSpec spec = silent_filter(2);
   const auto corners = [](double t) { return std::fmod(std::floor(t / 0.02 + 1e-6) * 7919.0, 13.0) - 6.0; };
   const auto lines = [&](double t) {
     const double before = std::floor(t / 0.02 + 1e-6) * 0.02, share = (t - before) / 0.02;
@@ -151,7 +151,7 @@ TEST_CASE("halving the tick changes nothing for a power that goes in straight li
 }
 
 TEST_CASE("halving the tick changes the signal of a passer-by by less than the bound") {
-  const DetectorSpec spec = silent(2);
+  const DetectorSpec spec = silent_filter(2);
   constexpr double tick_s = 0.02, width_s = 0.1;  // as fast as somebody who runs past at 3 m
   const auto pulse = [](double t) { return std::exp(-0.5 * std::pow((t - 1.0) / width_s, 2)); };
   const double curvature = 1.0 / (width_s * width_s);
@@ -169,7 +169,7 @@ TEST_CASE("halving the tick changes the signal of a passer-by by less than the b
 }
 
 TEST_CASE("at rest with any power nothing comes out") {
-  const std::vector<double> volts = response(silent(2), std::vector<double>(500, 3.7), 0.02);
+  const std::vector<double> volts = response(silent_filter(2), std::vector<double>(500, 3.7), 0.02);
   for (const double value : volts) REQUIRE(std::abs(value) < 1e-12);
 }
 

@@ -7,14 +7,13 @@
 #include "pir/zone_motion.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
 #include "support/plain_motion.hpp"
+#include "support/shipped.hpp"
 
 using namespace pirsim;
+using pirsim::test::wall_lens;
 
 namespace {
-
-SensorModelSpec wall_lens() { return io::read_sensor_model(pirsim::test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 Quat tilted_down(double degrees) { return glm::angleAxis(-degrees * M_PI / 180.0, Vec3(1, 0, 0)); }
 

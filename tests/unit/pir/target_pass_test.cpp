@@ -7,18 +7,17 @@
 #include "pir/planck.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
+#include "support/shipped.hpp"
 
 using namespace pirsim;
 using pir::Crossing;
 using pir::crossings;
 using pir::TargetPass;
+using test::wall_lens;
 
 namespace {
 
 constexpr double tick_s = 0.01, aperture_m2 = 20e-6;
-
-SensorModelSpec wall_lens() { return io::read_sensor_model(test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 double largest(const std::vector<double>& power) {
   double result = 0.0;

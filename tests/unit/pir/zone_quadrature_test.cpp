@@ -6,16 +6,15 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
+#include "support/shipped.hpp"
 
 using namespace pirsim;
 using pir::solid_angle_sr;
 using pir::WeightedDirection;
 using pir::zone_quadrature;
+using test::wall_lens;
 
 namespace {
-
-SensorModelSpec wall_lens() { return io::read_sensor_model(test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 /// A rectangular zone straight ahead.
 struct AheadZone {

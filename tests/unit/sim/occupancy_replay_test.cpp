@@ -21,7 +21,7 @@ using namespace pirsim::test;
 
 namespace {
 
-ScriptSpec script_with(const std::vector<TrackSpec>& tracks, MotionStyle style) {
+ScriptSpec script_of_tracks(const std::vector<TrackSpec>& tracks, MotionStyle style) {
   ScriptSpec script = script_of({});
   OccupancySpec& occupancy = script.trials.front().occupancy.emplace();
   occupancy.style = style;
@@ -54,7 +54,7 @@ std::vector<TrackSpec> two_tracks() {
 }
 
 void check_tracks(const std::vector<TrackSpec>& tracks, MotionStyle style, int tick_rate_hz) {
-  ScriptSpec script = script_with(tracks, style);
+  ScriptSpec script = script_of_tracks(tracks, style);
   script.sensing.tick_rate_hz = script.sensing.ticks_per_window = tick_rate_hz;
   const Model model = compile(shipped_scene("meeting_room.gltf"), script);
   RunState state(model.compiled(), 0);
@@ -103,7 +103,7 @@ TEST_CASE("Tracked people are at every tick where their points say, and there fr
 
 TEST_CASE("A tracked person's feet stand still while they stand, and swing as far as is walked") {
   const std::vector<TrackSpec> tracks = two_tracks();
-  const Model model = compile(shipped_scene("meeting_room.gltf"), script_with(tracks, MotionStyle::choreographed));
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script_of_tracks(tracks, MotionStyle::choreographed));
   RunState state(model.compiled(), 0);
   body::Feet before{};
   double at_rest_m = 0.0, walked_m = 0.0, fastest_m_s = 0.0;
@@ -136,7 +136,7 @@ TEST_CASE("A tracked person's body stays whole: round corners, back, sideways an
   back.person = "back";
   back.headings_deg = {-100.0, -100.0};
   tracks.push_back(back);
-  ScriptSpec script = script_with(tracks, MotionStyle::natural);
+  ScriptSpec script = script_of_tracks(tracks, MotionStyle::natural);
   script.sensing.tick_rate_hz = script.sensing.ticks_per_window = 25;
   const Model model = compile(shipped_scene("meeting_room.gltf"), script);
   RunState state(model.compiled(), 0);
@@ -162,7 +162,8 @@ TEST_CASE("A tracked person faces where they go, or as the data say") {
   track.times_s = {0.0, 4.0};
   track.points = {{6.3, -0.6}, {2.3, -0.6}};  // towards -X, which is 90 degrees to the left of -Z
   const auto heading_at = [&](double at_s) {
-    const Model model = compile(shipped_scene("meeting_room.gltf"), script_with({track}, MotionStyle::choreographed));
+    const Model model =
+        compile(shipped_scene("meeting_room.gltf"), script_of_tracks({track}, MotionStyle::choreographed));
     RunState state(model.compiled(), 0);
     while (static_cast<double>(state.tick) * model.tick_s() < at_s) move_tick(model.compiled(), state);
     return degrees(state.crowd.actors().front().motion().heading());

@@ -19,7 +19,7 @@ struct Forecasts {
 };
 
 /// Labels drawn from random probabilities q; what is told of them is q^sharpness, scaled to sum 1.
-Forecasts draw(std::size_t rows, double sharpness, std::uint32_t study) {
+Forecasts draw_forecasts(std::size_t rows, double sharpness, std::uint32_t study) {
   Stream stream({71, study, 0, Purpose::test});
   Forecasts drawn{Matrix<double>(rows, 4), {}};
   for (std::size_t r = 0; r < rows; ++r) {
@@ -50,7 +50,7 @@ Matrix<double> combined(const LogPool& pool, const Forecasts& forecasts) {
 }  // namespace
 
 TEST_CASE("temperature scaling finds the sharpness that was put in and repairs the calibration", "[stats]") {
-  const Forecasts sharp = draw(8000, 2.5, 0), fresh = draw(8000, 2.5, 1);
+  const Forecasts sharp = draw_forecasts(8000, 2.5, 0), fresh = draw_forecasts(8000, 2.5, 1);
   const std::vector<Matrix<double>> sources{sharp.probabilities};
   const LogPool pool = LogPool::fit(sources, sharp.labels);
   CHECK(pool.weights()[0] == Approx(1.0 / 2.5).epsilon(0.06));
@@ -60,7 +60,7 @@ TEST_CASE("temperature scaling finds the sharpness that was put in and repairs t
 }
 
 TEST_CASE("a pool gives no weight to a source that knows nothing", "[stats]") {
-  const Forecasts honest = draw(6000, 1.0, 2), noise = draw(6000, 1.0, 3);
+  const Forecasts honest = draw_forecasts(6000, 1.0, 2), noise = draw_forecasts(6000, 1.0, 3);
   const std::vector<Matrix<double>> sources{honest.probabilities, noise.probabilities};
   const LogPool pool = LogPool::fit(sources, honest.labels);
   CHECK(pool.weights()[0] == Approx(1.0).margin(0.08));

@@ -16,7 +16,7 @@ using pirsim::test::Labelled;
 namespace {
 
 /// Two classes in 12 columns of unit noise; class 0 varies by sd 5 along (1, 1, 0, ...), class 1 not at all.
-Labelled draw(std::size_t rows, std::uint32_t study) {
+Labelled draw_shapes(std::size_t rows, std::uint32_t study) {
   Stream stream({91, study, 0, Purpose::test});
   Labelled drawn{Matrix<float>(rows, 12), {}};
   for (std::size_t r = 0; r < rows; ++r) {
@@ -32,7 +32,7 @@ Labelled draw(std::size_t rows, std::uint32_t study) {
 }  // namespace
 
 TEST_CASE("what a class varies by is not strange for it and what it does not vary by is", "[stats]") {
-  const Labelled table = draw(4000, 0);
+  const Labelled table = draw_shapes(4000, 0);
   const ClassShapes shapes = ClassShapes::fit(table.features, table.labels, 2, {.subspace = 1});
   std::vector<float> along(12, 0.0F), across(12, 0.0F);
   along[0] = along[1] = 6.0F;
@@ -46,7 +46,7 @@ TEST_CASE("what a class varies by is not strange for it and what it does not var
 }
 
 TEST_CASE("strangeness of a class's own fresh rows has the mean that normal theory gives", "[stats]") {
-  const Labelled table = draw(4000, 1), fresh = draw(2000, 2);
+  const Labelled table = draw_shapes(4000, 1), fresh = draw_shapes(2000, 2);
   const ClassShapes shapes = ClassShapes::fit(table.features, table.labels, 2, {.subspace = 3});
   double mahalanobis = 0.0;
   for (std::size_t r = 0; r < 2000; r += 2) mahalanobis += shapes.strangeness(fresh.features.row(r), 0) / 1000;
@@ -56,7 +56,7 @@ TEST_CASE("strangeness of a class's own fresh rows has the mean that normal theo
 
 TEST_CASE("a pair of common values is strange where one predicts the other otherwise", "[stats]") {
   // Column 1 follows column 0 closely in class 0: (1.5, -1.5) times their sd is a rare pair of common values.
-  const Labelled table = draw(4000, 4);
+  const Labelled table = draw_shapes(4000, 4);
   const ClassShapes shapes = ClassShapes::fit(table.features, table.labels, 2, {.subspace = 1, .curved = 0});
   std::vector<float> pair(12, 0.0F);
   pair[0] = 7.5F;
@@ -87,7 +87,7 @@ TEST_CASE("a class that bends is followed along its bend", "[stats]") {
 }
 
 TEST_CASE("class shapes refuse too few rows and rows of another length", "[stats]") {
-  const Labelled table = draw(40, 3);
+  const Labelled table = draw_shapes(40, 3);
   std::vector<int> labels = table.labels;
   labels[0] = 2;
   CHECK_THROWS_AS(ClassShapes::fit(table.features, labels, 3), Error);

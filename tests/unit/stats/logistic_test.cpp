@@ -21,7 +21,7 @@ struct Draws {
 double share(double odds) { return 1.0 / (1.0 + std::exp(-odds)); }
 
 /// Log-odds -0.5 + 1.0 x0 + 0 x1 + a normal effect of the trial (20 rows each, which also share x1).
-Draws draw(std::size_t trials, double trial_sd, std::uint32_t study) {
+Draws draw_trials(std::size_t trials, double trial_sd, std::uint32_t study) {
   Stream stream({61, study, 0, Purpose::test});
   Draws drawn{Matrix<double>(trials * 20, 2), {}, {}};
   for (std::size_t trial = 0; trial < trials; ++trial) {
@@ -56,7 +56,7 @@ TEST_CASE("one binary column's logistic fit is the table's log odds ratio and it
 }
 
 TEST_CASE("a known offset is taken off and a ridge draws slopes to zero", "[stats]") {
-  const Draws drawn = draw(100, 0.0, 0);
+  const Draws drawn = draw_trials(100, 0.0, 0);
   std::vector<double> offset;
   for (std::size_t r = 0; r < drawn.columns.rows(); ++r) offset.push_back(-0.5 + drawn.columns(r, 0));
   const LogisticFit rest = fit_logistic(drawn.columns, drawn.outcomes, {.offset = offset});
@@ -73,7 +73,7 @@ TEST_CASE("standard errors by trial hold where rows of a trial depend on each ot
   constexpr int studies = 300;
   int plain = 0, by_trial = 0;
   for (int study = 0; study < studies; ++study) {
-    const Draws drawn = draw(60, 1.0, static_cast<std::uint32_t>(study + 1));
+    const Draws drawn = draw_trials(60, 1.0, static_cast<std::uint32_t>(study + 1));
     const LogisticFit independent = fit_logistic(drawn.columns, drawn.outcomes);
     const LogisticFit clustered = fit_logistic(drawn.columns, drawn.outcomes, {.cluster = drawn.trial});
     plain += std::abs(independent.coefficients[2]) > 1.96 * independent.standard_errors[2] ? 1 : 0;

@@ -21,7 +21,7 @@ struct Placed {
 
 /// Class 0 lies around (0, 0), class 1 around (3, 0), both with unit noise; class 2 on a bow: (s, s^2 / 4) with s even
 /// in 0 to 8 and noise of 0.2, which no single normal distribution describes.
-Placed draw(std::size_t rows, std::uint32_t study) {
+Placed draw_layers(std::size_t rows, std::uint32_t study) {
   Stream stream({95, study, 0, Purpose::test});
   Placed drawn{Matrix<double>(rows, 2), {}};
   for (std::size_t r = 0; r < rows; ++r) {
@@ -37,7 +37,7 @@ Placed draw(std::size_t rows, std::uint32_t study) {
 }  // namespace
 
 TEST_CASE("a single layer has the density of the normal distribution that made its rows", "[stats]") {
-  const Placed table = draw(6000, 0);
+  const Placed table = draw_layers(6000, 0);
   const NormalLayers layers = NormalLayers::fit(table.places, table.labels, 3, {.layers = 1});
   // log N(x; 0, I) - log N(x; (3, 0), I) = -3 x + 4.5. Means of 2,000 rows err by 0.022, so that at |x| <= 3 the
   // difference errs by 0.022 x 3 sqrt(2), twice that with the covariances'.
@@ -50,7 +50,7 @@ TEST_CASE("a single layer has the density of the normal distribution that made i
 }
 
 TEST_CASE("a class that runs away from the first one along a bow is followed by its layers", "[stats]") {
-  const Placed table = draw(6000, 1);
+  const Placed table = draw_layers(6000, 1);
   const auto gap = [&](std::size_t n) {
     const NormalLayers layers = NormalLayers::fit(table.places, table.labels, 3, {.layers = n});
     // On the bow, and as far above the chord's normal distribution, whose mean is 5.33 at x = 4, as the bow lies below.
@@ -61,7 +61,7 @@ TEST_CASE("a class that runs away from the first one along a bow is followed by 
 }
 
 TEST_CASE("densities of layers integrate to the same number for every class", "[stats]") {
-  const Placed table = draw(3000, 2);
+  const Placed table = draw_layers(3000, 2);
   const NormalLayers layers = NormalLayers::fit(table.places, table.labels, 3);
   std::array<double, 3> sums{};
   for (double x = -6.0; x < 14.0; x += 0.05) {
@@ -75,7 +75,7 @@ TEST_CASE("densities of layers integrate to the same number for every class", "[
 }
 
 TEST_CASE("layers refuse too few rows and places of another length", "[stats]") {
-  const Placed table = draw(60, 3);
+  const Placed table = draw_layers(60, 3);
   CHECK_THROWS_AS(NormalLayers::fit(table.places, table.labels, 4), Error);
   const NormalLayers layers = NormalLayers::fit(table.places, table.labels, 3);
   CHECK_THROWS_AS(layers.log_densities(std::array{1.0}), Error);

@@ -33,7 +33,7 @@ constexpr double precision = 1.0 + 1.0 / 0.25 + 4.0 / 9.0;
 double exact_mean(double first, double second) { return (first / 0.25 + 2.0 * second / 9.0) / precision; }
 
 /// Share of 90 % intervals that hold the truth, for parameters drawn from the prior.
-double coverage(double widening, int studies) {
+double posterior_coverage(double widening, int studies) {
   const Conjugate table = simulate(1000, 0);
   const Conjugate truths = simulate(static_cast<std::size_t>(studies), 1);
   int held = 0;
@@ -65,8 +65,8 @@ TEST_CASE("the adjusted posterior is the conjugate one", "[stats]") {
 TEST_CASE("ninety per cent posterior intervals hold the truth nine times in ten and narrowed ones do not", "[stats]") {
   constexpr int studies = 600;
   const double standard_error = std::sqrt(0.9 * 0.1 / studies);
-  CHECK(std::abs(coverage(1.0, studies) - 0.9) < 3 * standard_error);
-  CHECK(coverage(0.7, studies) < 0.9 - 4 * standard_error);
+  CHECK(std::abs(posterior_coverage(1.0, studies) - 0.9) < 3 * standard_error);
+  CHECK(posterior_coverage(0.7, studies) < 0.9 - 4 * standard_error);
 }
 
 TEST_CASE("the posterior of a bounded parameter stays in its bounds", "[stats]") {

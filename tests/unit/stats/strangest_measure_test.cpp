@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t n_known = 39, n_measures = 6;
 
-Matrix<double> draw(Stream& stream, std::size_t n_rows) {
+Matrix<double> draw_measures(Stream& stream, std::size_t n_rows) {
   Matrix<double> rows(n_rows, n_measures);
   for (double& value : rows.values()) value = stream.normal();
   return rows;
@@ -53,7 +53,7 @@ TEST_CASE("one more row of the same kind is refused exactly as often as the leve
   Stream stream({91, 0, 0, Purpose::test});
   double refused = 0.0, refused_naively = 0.0;
   for (int i = 0; i < n_studies; ++i) {
-    const Matrix<double> known = draw(stream, n_known), more = draw(stream, 1);
+    const Matrix<double> known = draw_measures(stream, n_known), more = draw_measures(stream, 1);
     refused += StrangestMeasure(known).p(more.row(0)) <= 0.05 ? 1.0 / n_studies : 0.0;
     refused_naively += naive_p(known, more.row(0)) <= 0.05 ? 1.0 / n_studies : 0.0;
   }
@@ -64,7 +64,7 @@ TEST_CASE("one more row of the same kind is refused exactly as often as the leve
 
 TEST_CASE("what is strange by one measure is strange, whatever the others and their units", "[stats]") {
   Stream stream({92, 0, 0, Purpose::test});
-  Matrix<double> known = draw(stream, 200);
+  Matrix<double> known = draw_measures(stream, 200);
   std::vector<double> row(n_measures, 0.0);
   CHECK(StrangestMeasure(known).p(row) > 0.5);
   row[4] = 6.0;

@@ -13,7 +13,7 @@ using namespace pirsim;
 
 namespace {
 
-TriMesh box(const Vec3& least, const Vec3& most) {
+TriMesh small_box(const Vec3& least, const Vec3& most) {
   TriMesh mesh;
   for (int i = 0; i < 8; ++i)
     mesh.positions.emplace_back((i & 1) != 0 ? most.x : least.x, (i & 2) != 0 ? most.y : least.y,
@@ -28,7 +28,7 @@ struct ModelBuilder {
   int add(const std::string& name, const Vec3& least, const Vec3& most, int parent = -1) {
     const int node = static_cast<int>(model.nodes.size());
     model.nodes.push_back({name, parent});
-    model.parts.push_back({node, box(least, most)});
+    model.parts.push_back({node, small_box(least, most)});
     return node;
   }
   int group(const std::string& name) {
@@ -267,7 +267,7 @@ TEST_CASE("a garden full of things on the ground is no room, and a hall around a
   CHECK(found.areas.size() == 3);
 
   ModelBuilder hall;
-  TriMesh shell = box({0, 0, 0}, {12, 4, 10});
+  TriMesh shell = small_box({0, 0, 0}, {12, 4, 10});
   hall.model.nodes.push_back({"Hall", -1});
   hall.model.parts.push_back({0, shell});
   hall.add("Carpet", {4, 0.0, 4}, {7, 0.01, 6});

@@ -18,7 +18,7 @@ using What = DataFinding::What;
 /// Bit of a row and sensor, from what the sensor said before and a uniform number.
 using Bit = std::function<std::uint8_t(std::size_t row, std::size_t sensor, std::uint8_t before, double uniform)>;
 
-StudyFrame frame() { return {{"A", "B", "C", "D"}, {"left", "middle", "right"}, {}, 1.0}; }
+StudyFrame frame_of_four() { return {{"A", "B", "C", "D"}, {"left", "middle", "right"}, {}, 1.0}; }
 
 /// On and off for some seconds each.
 std::uint8_t at_work(std::size_t, std::size_t, std::uint8_t before, double uniform) {
@@ -56,7 +56,7 @@ std::vector<Series> pilot(const Bit& bit = at_work, const Change& change = none)
 std::vector<DataFinding> check(std::vector<Series> runs, std::span<const Series> simulated) {
   Measured measured;
   measured.runs = std::move(runs);
-  return check_data(frame(), measured, simulated);
+  return check_data(frame_of_four(), measured, simulated);
 }
 std::vector<DataFinding> check(const Change& change, const Change& in_model = none) {
   std::vector<Series> runs = dataset(1);
@@ -213,5 +213,5 @@ TEST_CASE("sums have no rows to look at", "[data_check]") {
   Measured measured;
   measured.kind = Measured::Kind::sums;
   measured.sums = {{0, 0, 1, 3.0}, {1, 0, 1, 3.0}};
-  CHECK(check_data(frame(), measured, pilot()).empty());
+  CHECK(check_data(frame_of_four(), measured, pilot()).empty());
 }

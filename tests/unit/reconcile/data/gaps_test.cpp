@@ -12,7 +12,7 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-constexpr std::size_t n_rows = 20000;
+constexpr std::size_t n_gap_rows = 20000;
 
 Series series_of(std::vector<std::uint8_t> bits, std::size_t n_sensors) {
   return {0, 1, 0, bits.size() / n_sensors, std::move(bits)};
@@ -23,7 +23,7 @@ enum class Loss { alone, joint };
 JointSilence silence_of(std::size_t n_sensors, double lost, Loss loss) {
   Stream stream({1, 0, 0, Purpose::test});
   std::vector<std::uint8_t> bits;
-  for (std::size_t row = 0; row < n_rows; ++row) {
+  for (std::size_t row = 0; row < n_gap_rows; ++row) {
     const bool all = stream.uniform() < lost;
     for (std::size_t s = 0; s < n_sensors; ++s) {
       const bool own = stream.uniform() < lost;
@@ -56,7 +56,7 @@ TEST_CASE("sensors that lose rows by themselves are silent together by chance al
   for (const std::size_t n_sensors : {2U, 3U}) {
     CAPTURE(n_sensors);
     // A sensor is awaited unless it loses all three rows before, or all three after.
-    const double awaited = std::pow(1.0 - std::pow(lost, 3), 2), n = n_rows;
+    const double awaited = std::pow(1.0 - std::pow(lost, 3), 2), n = n_gap_rows;
     const double two = std::pow(lost * awaited, 2), three = std::pow(lost * awaited, 3);
     const double chance = n_sensors == 2 ? two : three + 3.0 * two * (1.0 - awaited);
     const double standard_error = std::sqrt(chance * (1.0 - chance) * n);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double level = 0.1;
 
-const ReferenceStudy& reference_study() {
+const ReferenceStudy& three_trials() {
   static const ReferenceStudy reference = [] {
     Settings settings;
     settings.table = {60, 60, 60, {"false_triggers"}};
@@ -25,8 +25,8 @@ const ReferenceStudy& reference_study() {
   return reference;
 }
 
-std::vector<float> injected(std::uint32_t realization, const std::vector<EffectSpec>& effects) {
-  const ReferenceStudy& reference = reference_study();
+std::vector<float> injected_at(std::uint32_t realization, const std::vector<EffectSpec>& effects) {
+  const ReferenceStudy& reference = three_trials();
   const SimulatedRealization fresh(reference.source, reference.frame, 500000 + realization, 1);
   return statistics_of(reference.frame, reference.shape, reference.table.profile, *fresh.with_effects(effects, 0, 1));
 }
@@ -44,7 +44,7 @@ FittedEffect false_triggers(double rate_per_s, std::vector<double> equally_likel
 }
 
 std::vector<double> p_of(std::span<const PatchedModel> models, unsigned threads = 0) {
-  const ReferenceStudy& reference = reference_study();
+  const ReferenceStudy& reference = three_trials();
   std::vector<double> p;
   for (const GlobalP& one : p_with(models, reference, reference.map(all_trials(reference.frame)), level, {1, threads}))
     p.push_back(one.p);
@@ -58,25 +58,25 @@ double p_of(const std::vector<FittedEffect>& applied, std::span<const float> obs
 
 }  // namespace
 
-TEST_CASE("a model passes with what made the data applied, and no other", "[reconcile][seconds]") {
+TEST_CASE("a model passes with what made the data applied, and no other", "[reconcile][seconds][model-check]") {
   const FittedEffect right = false_triggers(0.1, {});
   int right_passes = 0;
   constexpr int n = 4;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::vector<float> observed = injected(i, {right.effect});
+    const std::vector<float> observed = injected_at(i, {right.effect});
     right_passes += p_of({right}, observed) > level ? 1 : 0;
     CHECK(p_of({}, observed) <= level);
   }
   CHECK(right_passes >= n - 1);  // each fails with probability 0.1: two of four once in 19 choices of seeds
-  CHECK(p_of({right}, injected(100, {})) <= level);
+  CHECK(p_of({right}, injected_at(100, {})) <= level);
 }
 
 TEST_CASE("right models fail as often as the level says, and oftener if their rooms are all alike",
-          "[reconcile][seconds]") {
+          "[reconcile][seconds][model-check]") {
   constexpr std::uint32_t n = 40;
   const FittedEffect right = false_triggers(0.02, {});
   std::vector<std::vector<float>> observed;
-  for (std::uint32_t i = 0; i < n; ++i) observed.push_back(injected(1000 + i, {right.effect}));
+  for (std::uint32_t i = 0; i < n; ++i) observed.push_back(injected_at(1000 + i, {right.effect}));
   std::vector<PatchedModel> models;
   for (const std::vector<float>& one : observed) models.push_back({std::span(&right, 1), one});
   const auto n_refused = [&](const ReferenceStudy& reference) {
@@ -84,30 +84,31 @@ TEST_CASE("right models fail as often as the level says, and oftener if their ro
                                  [](const GlobalP& of) { return of.p <= level; });
   };
   // 4 expected, standard error 1.9: more than 9 once in 200 seeds.
-  CHECK(n_refused(reference_study()) <= 9);
-  ReferenceStudy alike = reference_study();
+  CHECK(n_refused(three_trials()) <= 9);
+  ReferenceStudy alike = three_trials();
   alike.source.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
   CHECK(n_refused(alike) > 9);
 }
 
-TEST_CASE("what a fit doesn't know for sure widens what the model can have made", "[reconcile][seconds]") {
-  const std::vector<float> observed = injected(3, {false_triggers(0.1, {}).effect});
+TEST_CASE("what a fit doesn't know for sure widens what the model can have made", "[reconcile][seconds][model-check]") {
+  const std::vector<float> observed = injected_at(3, {false_triggers(0.1, {}).effect});
   CHECK(p_of({false_triggers(0.01, {})}, observed) <= level);
   CHECK(p_of({false_triggers(0.01, {0.01, 0.05, 0.1, 0.2})}, observed) > level);
 }
 
-TEST_CASE("a model's p is the same on any number of threads", "[reconcile][seconds]") {
-  const std::vector<float> observed = injected(7, {});
+TEST_CASE("a model's p is the same on any number of threads", "[reconcile][seconds][model-check]") {
+  const std::vector<float> observed = injected_at(7, {});
   const std::vector<FittedEffect> applied{false_triggers(0.01, {0.005, 0.01, 0.02})};
   CHECK(p_of(applied, observed, 1) == p_of(applied, observed, 3));
 }
 
-TEST_CASE("what is said of a model doesn't depend on those that are looked at beside it", "[reconcile][seconds]") {
+TEST_CASE("what is said of a model doesn't depend on those that are looked at beside it",
+          "[reconcile][seconds][model-check]") {
   FittedEffect taller;
   taller.effect = {"body_size", {{"scale", 1.1}}, {}, {}};
   const std::vector<FittedEffect> right{false_triggers(0.1, {0.08, 0.1, 0.12})}, wrong{false_triggers(0.01, {})},
       traced_anew{taller};
-  const std::vector<float> observed = injected(5, {right.front().effect});
+  const std::vector<float> observed = injected_at(5, {right.front().effect});
   const std::vector<PatchedModel> all{{wrong, observed}, {right, observed}, {traced_anew, observed}, {{}, observed}};
   const std::vector<double> together = p_of(all);
   for (std::size_t i = 0; i < all.size(); ++i) CHECK(together[i] == p_of(std::span(&all[i], 1)).front());

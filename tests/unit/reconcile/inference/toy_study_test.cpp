@@ -31,11 +31,11 @@ struct Rates {
   double alarms = 0.0, named_right = 0.0, named_wrong = 0.0, truth_kept = 0.0, none = 0.0, by_margin = 0.0;
 };
 
-struct Study {
+struct ToyStudy {
   Matrix<double> null = in_double(toy::draw_datasets(toy::nothing, 299, seconds, 1));
   ConformalClassifier classifier;
 
-  explicit Study(std::vector<int> (*relabel)(std::vector<int>)) {
+  explicit ToyStudy(std::vector<int> (*relabel)(std::vector<int>)) {
     Matrix<float> features;
     std::vector<int> labels;
     for (int effect = 0; effect < toy::n_known; ++effect) {
@@ -95,7 +95,7 @@ std::vector<int> turned(std::vector<int> labels) {
 }  // namespace
 
 TEST_CASE("a toy study is located and named with the rates that are promised", "[stats][seconds]") {
-  const Study study(as_they_are);
+  const ToyStudy study(as_they_are);
   const Rates nulls = study.rates(toy::nothing, 200);
   CHECK(nulls.alarms < alpha + tolerance(alpha, 200));
   CHECK(nulls.named_wrong < 0.02 + tolerance(0.02, 200));
@@ -127,7 +127,7 @@ TEST_CASE("a toy study is located and named with the rates that are promised", "
 }
 
 TEST_CASE("a toy study whose labels were mixed up names next to nothing rightly", "[stats]") {
-  const Study study(turned);
+  const ToyStudy study(turned);
   const Rates missed = study.rates(toy::missed, 40);
   CHECK(missed.named_right < tolerance(0.05, 40));
   CHECK(missed.truth_kept < 0.5);

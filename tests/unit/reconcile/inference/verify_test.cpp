@@ -18,7 +18,7 @@ namespace {
 
 const EffectSpec false_triggers{"false_triggers", {{"rate_per_s", 0.05}}, {}, {}};
 const EffectSpec stretching{"pulse_stretching", {{"hold_s", 2.5}, {"spread", 0.0}}, {}, {}};
-const VerifySettings quick{0.05, 40, 40};
+const VerifySettings few_realizations{0.05, 40, 40};
 
 ReferenceStudy make(const std::vector<EffectSpec>& already, Measured::Kind kind) {
   ScriptSpec script = test::short_study({"S1", "S2", "S4", "S6", "S8", "S10"}, 60.0);
@@ -35,8 +35,8 @@ const ReferenceStudy& plain_reference() {
 }
 
 /// The same data seen by any of the reference studies.
-std::vector<float> injected(const ReferenceStudy& reference, std::uint32_t realization,
-                            const std::vector<EffectSpec>& effects) {
+std::vector<float> seen_by(const ReferenceStudy& reference, std::uint32_t realization,
+                           const std::vector<EffectSpec>& effects) {
   const SimulatedRealization fresh(plain_reference().source, plain_reference().frame, 500000 + realization, 1);
   return statistics_of(reference.frame, reference.shape, reference.table.profile, *fresh.with_effects(effects, 0, 1));
 }
@@ -60,19 +60,19 @@ ReferenceStudy shuffled(ReferenceStudy reference) {
 }
 
 AppliedEffect applied(const ReferenceStudy& reference, std::span<const float> data, const std::string& effect) {
-  return {&reference, data, effect, seen_rows(*reference.view(all_trials(reference.frame), 0), quick.alpha)};
+  return {&reference, data, effect, seen_rows(*reference.view(all_trials(reference.frame), 0), few_realizations.alpha)};
 }
 
 Verification verify_one(const std::vector<AppliedEffect>& steps, const Folds& folds) {
   const Claim claim{steps, {}};
-  return verify(std::span(&claim, 1), folds, quick, {}).front();
+  return verify(std::span(&claim, 1), folds, few_realizations, {}).front();
 }
 
 }  // namespace
 
 TEST_CASE("a fold names and fits without its own trials", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
-  std::vector<float> data = injected(reference, 1, {false_triggers});
+  std::vector<float> data = seen_by(reference, 1, {false_triggers});
   const Folds folds = three_folds(reference);
   const auto run = [&] { return verify_one({applied(reference, data, "false_triggers")}, folds); };
   const Verification before = run();
@@ -95,7 +95,7 @@ TEST_CASE("with the injected effect held-out trials are predicted and with shuff
   const ReferenceStudy confused = shuffled(reference);
   double honest_share = 0.0, confused_share = 0.0;
   for (std::uint32_t realization = 10; realization < 13; ++realization) {
-    const std::vector<float> data = injected(reference, realization, {false_triggers});
+    const std::vector<float> data = seen_by(reference, realization, {false_triggers});
     const Verification good = verify_one({applied(reference, data, "false_triggers")}, three_folds(reference));
     CHECK(good.shrunk);
     CHECK(good.refused);
@@ -114,7 +114,7 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile][minutes][six-
   int refused = 0;
   for (std::uint32_t realization = 20; realization < 24; ++realization) {
     const ReferenceStudy& reference = plain_reference();
-    const std::vector<float> data = injected(reference, realization, {});
+    const std::vector<float> data = seen_by(reference, realization, {});
     const Verification v = verify_one({applied(reference, data, "false_triggers")}, three_folds(reference));
     CHECK((v.refused || !v.closed));
     refused += v.refused ? 1 : 0;
@@ -125,15 +125,15 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile][minutes][six-
 TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   const ReferenceStudy again = plain_reference();  // whose analysts can't be taken for those of the first
-  const std::vector<float> one = injected(reference, 50, {false_triggers}),
-                           other = injected(reference, 51, {stretching});
+  const std::vector<float> one = seen_by(reference, 50, {false_triggers}), other = seen_by(reference, 51, {stretching});
   const std::vector<Claim> claims{{{applied(reference, one, "false_triggers")}, {}},
                                   {{applied(again, one, "false_triggers")}, {}},
                                   {{applied(reference, other, "pulse_stretching")}, {"false_triggers"}}};
-  const std::vector<Verification> together = verify(claims, three_folds(reference), quick, {});
+  const std::vector<Verification> together = verify(claims, three_folds(reference), few_realizations, {});
   REQUIRE(together.size() == 3);
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    const Verification alone = verify(std::span(claims).subspan(i, 1), three_folds(reference), quick, {}).front();
+    const Verification alone =
+        verify(std::span(claims).subspan(i, 1), three_folds(reference), few_realizations, {}).front();
     CHECK(together[i].names == alone.names);
     CHECK(together[i].after.energy_score == alone.after.energy_score);
     CHECK(together[i].placebo == alone.placebo);
@@ -170,10 +170,10 @@ TEST_CASE("a patch that puts somebody into the only doorway is judged as any oth
                     {{"place", "given"}},
                     {}}};
   }
-  const std::vector<float> data = injected(plain_reference(), 1, {false_triggers});
+  const std::vector<float> data = seen_by(plain_reference(), 1, {false_triggers});
   const std::vector<Claim> claims{{{applied(blocked, data, "second_person")}, {}},
                                   {{applied(plain_reference(), data, "false_triggers")}, {}}};
-  const std::vector<Verification> found = verify(claims, three_folds(plain_reference()), quick, {});
+  const std::vector<Verification> found = verify(claims, three_folds(plain_reference()), few_realizations, {});
   CHECK(found[0].n_trials == plain_reference().frame.trials.size());
   CHECK_FALSE(found[0].shrunk);
   CHECK(found[1].n_trials == plain_reference().frame.trials.size());
@@ -182,7 +182,7 @@ TEST_CASE("a patch that puts somebody into the only doorway is judged as any oth
 TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   const Analyst analyst(reference.view(all_trials(reference.frame), 0), {0.05, 40, "false_triggers"}, {});
-  const std::vector<float> data = injected(reference, 60, {false_triggers});
+  const std::vector<float> data = seen_by(reference, 60, {false_triggers});
   const std::size_t left_out = hypothesis_of(reference.table, "false_triggers");
   CHECK(analyst.likeliest(data, [&](std::size_t hypothesis) { return hypothesis == left_out; }) == 0);
   CHECK(analyst.likeliest(data, [](std::size_t) { return true; }) != left_out);
@@ -190,7 +190,7 @@ TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][
 
 TEST_CASE("two effects are judged together and close more than one of them", "[reconcile][minutes][six-seats]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
-  const std::vector<float> data = injected(plain_reference(), 30, both);
+  const std::vector<float> data = seen_by(plain_reference(), 30, both);
   const Analyst analyst(plain_reference().view(all_trials(plain_reference().frame), 0), {0.05, 40}, {});
   const FittedEffect likeliest = analyst.fit(analyst.likeliest(data, [](std::size_t) { return true; }), data);
   const std::string name = likeliest.effect.name,
@@ -198,7 +198,7 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
   REQUIRE((name == "false_triggers" || name == "pulse_stretching"));
   const ReferenceStudy second = make({likeliest.effect}, Measured::Kind::series);
   CHECK(second.table.n_hypotheses() == 3);  // nothing and the two that are not in the model yet
-  const std::vector<float> again = injected(second, 30, both);
+  const std::vector<float> again = seen_by(second, 30, both);
   const AppliedEffect first = applied(plain_reference(), data, name), then = applied(second, again, rest);
   const Folds folds = three_folds(plain_reference());
   const Verification together = verify_one({first, then}, folds);
@@ -219,7 +219,7 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
 TEST_CASE("of sums nearly all seats must be better", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy reference = make({}, Measured::Kind::sums);
   const std::vector<float> data =
-      injected(reference, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats
+      seen_by(reference, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats
   const auto one_out = folds_of(sha256("sums"), all_trials(reference.frame), 6);
   const Verification all = verify_one({applied(reference, data, "missed_triggers")}, one_out);
   CHECK(all.n_folds == 6);

@@ -14,7 +14,7 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-ReferenceStudy reference_study(const Settings& analysis) {
+ReferenceStudy study_of(const Settings& analysis) {
   return make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 60.0), analysis,
                               [](const StudyFrame& frame, std::span<const Series> pilot) {
                                 return full_shape(frame, Measured::Kind::series, 1, pilot);
@@ -30,7 +30,7 @@ TEST_CASE("datasets that were injected are kept beside those of other numbers", 
   settings.n_nulls = 2;
   settings.n_injected = 0;
   settings.injected_folder = folder.path() / "injected";
-  const ReferenceStudy reference = reference_study(settings.analysis);
+  const ReferenceStudy reference = study_of(settings.analysis);
   const auto inject_so_many = [&](std::uint32_t n) {
     settings.n_nulls = n;
     return inject(reference, settings);

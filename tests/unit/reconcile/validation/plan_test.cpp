@@ -20,14 +20,14 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
+ScriptSpec planned_seat() { return test::short_study({"S4"}, 30.0); }
 
 PlanResult planned(const std::filesystem::path& table, unsigned threads) {
   PlanSettings settings;
   settings.analysis.table.effects = {"false_triggers", "missed_triggers", "dead_sensor"};
   settings.analysis.table_folder = table;
   settings.analysis.trees = 60;
-  return plan(test::shipped_scene("meeting_room.gltf"), one_seat(), settings, {1, threads});
+  return plan(test::shipped_scene("meeting_room.gltf"), planned_seat(), settings, {1, threads});
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ TEST_CASE("a longer study repeats every trial and adds a slow walk and the empty
 
 TEST_CASE("the walker of a longer study is the first person of any trial", "[plan]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
-  ScriptSpec script = one_seat();
+  ScriptSpec script = planned_seat();
   script.trials.insert(script.trials.begin(), TrialSpec{"empty", {}});
   CHECK(longer_study(scene, script).left_out.empty());
   script.trials.resize(1);
@@ -57,7 +57,7 @@ TEST_CASE("the walker of a longer study is the first person of any trial", "[pla
 
 TEST_CASE("a room without an entrance has no slow walk and the plan says so", "[plan]") {
   SceneSpec scene = test::shipped_scene("meeting_room.gltf");
-  ScriptSpec script = one_seat();
+  ScriptSpec script = planned_seat();
   scene.entrances.clear();
   script.trials.front().people.front().actions = {{action::Appear{{0.0, 0.0}, 0.0}, {}, {}, {}},
                                                   {action::Wait{30.0}, {}, "working", {}}};
@@ -91,7 +91,7 @@ TEST_CASE("a plan is the same for any number of threads and its numbers hold tog
 
 TEST_CASE("trials of a longer study have names of their own", "[plan]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
-  ScriptSpec script = one_seat();
+  ScriptSpec script = planned_seat();
   for (const char* id : {"S4 again", "slow walk", "empty room"}) {
     script.trials.push_back(script.trials.front());
     script.trials.back().id = id;
