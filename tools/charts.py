@@ -53,7 +53,7 @@ def charts_of(page: str) -> dict:
 
 
 VEGA = pathlib.Path("/usr/share/javascript/vega")
-PALETTE = pathlib.Path(__file__).parents[1] / "src/io/pages/palette.css"
+PALETTE = pathlib.Path(__file__).parents[1] / "src/show/palette.css"
 # Lines told apart by colour: the pages' own, on white.
 COLOURS = tuple(re.findall(r"--series-\d+: (#\w+)", PALETTE.read_text().split("@media")[0]))
 # Lines in the background, what was measured or what a formula says, lines to guide the eye.

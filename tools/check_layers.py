@@ -1,75 +1,62 @@
 #!/usr/bin/env python3
-"""Checks the layers of pirsim and the rooms of a layer: who may include whom, no cycles, each third-party library in its one place.
+"""Checks the houses of pirsim and their rooms: who may include whom, no cycles, each third-party library in its one place.
 
 Usage: check_layers.py [ROOT]; prints every violation as file:line: message and exits with 1 if there is any.
-The tables below are those in docs/architecture.md. Beside the layers it finds columns of rows that are listed outside
+The tables below are those in docs/architecture.md. Beside these it finds columns of rows that are listed outside
 of schema/columns.
 """
 import pathlib
 import re
 import sys
 
-BELOW = {
-    "core": set(),
-    "stats": {"core"},
-    "geom": {"core"},
-    "schema": {"geom", "core"},
-    "rt": {"schema", "geom", "core"},
-    "body": {"schema", "geom", "core"},
-    "pir": {"schema", "geom", "core"},
-    "io": {"effects", "schema", "geom", "core"},
-    "effects": {"schema", "geom", "core"},
-    "sim": {"effects", "rt", "body", "pir", "schema", "geom", "core"},
-    "studies": {"control", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
-    "control": {"io", "schema", "geom", "core"},
-    "counting": {"dataset", "io", "schema", "core"},
-    "calibrate": {"counting", "dataset", "studies", "effects", "io", "schema", "geom", "stats", "core"},
-}
-BELOW["app"] = set(BELOW)
-# rooms of a layer: who may include whom
+# from below to above: a house may use those before it
+HOUSES = ("model", "stats", "engine", "files", "show", "surveys", "rooms", "logs", "reconcile", "app")
+BELOW = {house: set(HOUSES[:place]) for place, house in enumerate(HOUSES)}
+BELOW["stats"] = {"model"}
+# rooms of a house: who may include whom
 ROOMS = {
-    "io": {"files": set(), "read": {"files"}, "write": {"files"}, "log": {"files", "read"},
-           "pages": {"files", "write", "log"}},
+    "model": {"core": set(), "geom": {"core"}, "schema": {"core", "geom"}},
+    "engine": {"study": set(), "rt": {"study"}, "body": {"study"}, "pir": {"study"}, "effects": {"study"},
+               "sim": {"study", "rt", "body", "pir", "effects"}},
+    "files": {"disk": set(), "read": {"disk"}, "write": {"disk", "read"}},
     "reconcile": {
         "data": set(),
         "ensemble": {"data"},
         "inference": {"data", "ensemble"},
-        "validation": {"data", "ensemble", "inference"},
-        "report": {"data", "ensemble", "inference", "validation"},
+        "selftest": {"data", "ensemble", "inference"},
+        "report": {"data", "ensemble", "inference", "selftest"},
     },
 }
-# public header -> the layer that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
+# public header -> the house that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
 PUBLIC = {
-    "error": "core", "input_file": "core", "interval": "core", "random": "core", "version": "core",
-    "geometry": "geom", "shapes": "geom", "rays": "geom",
-    "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "occupancy": "schema", "survey": "schema", "sample": "schema", "columns": "schema", "response": "schema",
-    "effects": "effects",
-    "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
-    "coverage": "studies", "look": "studies", "walk_test": "studies",
-    "room": "dataset", "flat": "dataset", "dataset": "dataset",
-    "csv": "io", "io": "io", "log": "io", "log_facts": "io",
-    "control": "control", "counting": "counting", "calibrate": "calibrate",
+    "error": "model", "input_file": "model", "interval": "model", "random": "model", "version": "model",
+    "geometry": "model", "shapes": "model", "rays": "model",
+    "sensor": "model", "scene": "model", "script": "model", "schedule": "model", "occupancy": "model", "survey": "model", "sample": "model", "columns": "model", "response": "model",
+    "effects": "engine",
+    "model": "engine", "state": "engine", "study": "engine", "recording": "engine",
+    "coverage": "surveys", "look": "surveys", "walk_test": "surveys",
+    "room": "rooms", "flat": "rooms", "dataset": "rooms",
+    "csv": "files", "io": "files", "log": "logs", "log_facts": "logs",
+    "control": "surveys", "counting": "logs", "calibrate": "logs",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
-# header prefix of a third-party library -> the only layers that may include it
+# header prefix of a third-party library -> the only houses or rooms that may include it
 THIRD_PARTY = {
-    "embree": {"rt"},
-    "tiny_gltf": {"io"},
-    "yaml-cpp": {"io"},
-    "nlohmann": {"io", "reconcile", "dataset", "counting", "calibrate"},
-    "stb": {"io"},
-    "zlib": {"io"},
-    "zstd": {"io"},
-    "sqlite3": {"io"},
-    "OpenMesh": {"geom"},
-    "date": {"io"},
-    "Random123": {"core"},
-    "nlopt": {"studies"},
+    "embree": {"engine/rt"},
+    "tiny_gltf": {"files"},
+    "yaml-cpp": {"files"},
+    "nlohmann": {"files", "show", "surveys", "rooms", "logs", "reconcile"},
+    "stb": {"show"},
+    "zlib": {"files", "show"},
+    "zstd": {"files"},
+    "sqlite3": {"logs"},
+    "OpenMesh": {"model/geom"},
+    "date": {"logs"},
+    "Random123": {"model/core"},
+    "nlopt": {"surveys"},
     "Eigen": {"stats"},
     "boost/math": {"stats"},
-    "openssl": {"core"},
+    "openssl": {"model/core"},
     "CLI": {"app"},
 }
 # the files that include a library, since its macros must be the same everywhere
@@ -80,10 +67,10 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # folders whose files, as any user of the library, may include public headers alone, beside their own and the description
 # of the specs
 OUTSIDE = ("python/src",)
-DESCRIPTION = "src/schema/fields"  # a file a group of specs; schema/fields.hpp includes them all
+DESCRIPTION = "src/model/schema/fields.hpp"
 # a field: `spec.field`, `&Spec::field`, its name in quotes, or one of a structured binding
 NAMED = re.compile(r'(?:\.|::|->)(\w+)\b(?!\()|"(\w+)"|auto&? \[([^\]]*)')
-DESCRIPTIONS = ("schema/fields.hpp", "schema/words.hpp")
+DESCRIPTIONS = ("model/schema/fields.hpp", "model/schema/words.hpp")
 
 
 def layer_of(path: pathlib.Path, root: pathlib.Path):
@@ -113,7 +100,7 @@ def room_fault(here: pathlib.Path, name: str):
 
 
 def stray_files(root: pathlib.Path):
-    """Every file of a layer with rooms is in one of them."""
+    """Every file of a house with rooms is in one of them."""
     for layer, rooms in ROOMS.items():
         for file in sorted((root / "src" / layer).rglob("*.?pp")):
             room = file.relative_to(root / "src" / layer).parts[0]
@@ -138,19 +125,17 @@ def violations(root: pathlib.Path):
                 graph[key].append(name)
             target = included_layer(name)
             if layer and target and target != layer and target not in BELOW[layer]:
-                yield f"{here}:{number}: layer {layer} must not include layer {target} ({name})"
+                yield f"{here}:{number}: {layer} must not include {target} ({name})"
             fault = room_fault(here, name) if match.group(1) == '"' else None
             if fault:
                 yield f"{here}:{number}: {fault}"
-            if name.startswith("schema/fields/") and DESCRIPTION not in (str(here.parent), str(here.with_suffix(""))):
-                yield f"{here}:{number}: {name} is a part of schema/fields.hpp: include that"
             for prefix, gate in GATES.items():
                 if match.group(1) == "<" and name.startswith(prefix + "/") and str(here) not in gate:
                     yield f"{here}:{number}: {name} may only be included in {' and '.join(gate)}"
             for prefix, homes in THIRD_PARTY.items():
                 if match.group(1) == "<" and (name == prefix or name.startswith((prefix + "/", prefix + "."))
                                               or (prefix == "embree" and name.startswith("embree"))):
-                    if layer not in homes or here.parts[0] == "include":
+                    if not homes & {layer, "/".join(here.parts[1:3])} or here.parts[0] == "include":
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
     yield from stray_files(root)
     yield from cycles(graph)
@@ -187,7 +172,7 @@ def listed_again(root: pathlib.Path):
         here = file.relative_to(root)
         lines = re.sub(r"auto&? \[[^\]]*\]", lambda found: found[0].replace("\n", " ") + "\n" * found[0].count("\n"),
                        file.read_text()).splitlines()  # a structured binding is one line
-        for spec, fields in specs.items() if str(here.parent) != DESCRIPTION else ():
+        for spec, fields in specs.items() if str(here) != DESCRIPTION else ():
             began, last, seen = 0, 0, set()
             for number, line in enumerate(lines, 1):
                 named = {name for names in NAMED.findall(line) for name in re.findall(r"\w+", "".join(names))} & fields
@@ -203,7 +188,7 @@ def listed_again(root: pathlib.Path):
 
 def described_specs(root: pathlib.Path):
     """The fields of each spec that has enough of them for a list to be one of all; labels are often left out."""
-    text = "".join(file.read_text() for file in sorted((root / DESCRIPTION).glob("*.hpp")))
+    text = (root / DESCRIPTION).read_text()
     found = re.findall(r"struct Fields<([\w:]+)> \{(.*?)\n\};", text, re.DOTALL)
     specs = {spec: set(re.findall(r"FIELD\((\w+)", text)) for spec, text in found}
     return {spec: fields for spec, fields in specs.items() if len(fields) >= 6}

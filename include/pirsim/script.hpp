@@ -157,7 +157,7 @@ struct ScriptedAction {
   Where where;                 ///< for messages
 };
 
-/// Meshes by the name of the body part (schema/body_part_names.hpp) that they stand for, in that part's frame.
+/// Meshes by the name of the body part (model/schema/words.hpp) that they stand for, in that part's frame.
 using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
 
 /// How warm a person's surface is, for the physical response. Derivation: docs/physics/analog.md. Hands are bare.

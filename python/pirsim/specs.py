@@ -4,7 +4,7 @@ Each class is one of the library's specs, with the same fields, units and defaul
 Points are (x, y, z) in metres in glTF's frame (right-handed, +Y up, floor in XZ), floor points are (x, z). Lists and
 dicts are ordinary ones. Nothing is checked before `pirsim.compile()`, which then names what it refuses.
 
-Written by tools/specs/write.py from src/schema/fields; what has a form of its own is in _spec_parts.py.
+Written by tools/specs/write.py from src/model/schema/fields.hpp; what has a form of its own is in _spec_parts.py.
 """
 
 from __future__ import annotations

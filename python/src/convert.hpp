@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include "model/schema/fields.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/sample.hpp"
-#include "schema/fields.hpp"
 
 namespace pirsim {
 

@@ -7,21 +7,20 @@
 #include <vector>
 
 #include "app/commands.hpp"
-#include "app/dataset_work.hpp"
-#include "app/log_inputs.hpp"
+#include "app/dataset_command.hpp"
+#include "app/log_command.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
-#include "control/outputs.hpp"
-#include "control/page.hpp"
-#include "control/row_source.hpp"
-#include "core/text.hpp"
-#include "io/files/atomic_file.hpp"
-#include "io/files/compression.hpp"
-#include "io/pages/report.hpp"
+#include "files/disk/compression.hpp"
+#include "files/disk/file.hpp"
+#include "logs/log_rows.hpp"
+#include "model/core/text.hpp"
+#include "model/schema/check_scene.hpp"
 #include "pirsim/control.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/version.hpp"
-#include "schema/areas.hpp"
+#include "show/report.hpp"
+#include "surveys/light_page.hpp"
 
 namespace pirsim::app {
 namespace {

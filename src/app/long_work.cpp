@@ -1,7 +1,6 @@
 #include "app/long_work.hpp"
 
 #include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>

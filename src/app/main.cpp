@@ -1,6 +1,4 @@
-// pirsim's command line: argv -> a command, and errors -> messages and exit codes.
 #include <unistd.h>
-
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -11,9 +9,11 @@
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
+#include "engine/rt/room.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/version.hpp"
-#include "rt/room.hpp"
+
+// pirsim's command line: argv -> a command, and errors -> messages and exit codes.
 
 namespace {
 

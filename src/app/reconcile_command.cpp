@@ -5,8 +5,8 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
-#include "effects/catalogue.hpp"
-#include "io/files/atomic_file.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "files/disk/file.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
@@ -14,8 +14,8 @@
 #include "reconcile/inference/verify.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/selftest.hpp"
+#include "reconcile/selftest/plan.hpp"
+#include "reconcile/selftest/selftest.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -5,15 +5,13 @@
 #include <utility>
 
 #include "app/commands.hpp"
-#include "app/dataset_work.hpp"
+#include "app/dataset_command.hpp"
 #include "app/session.hpp"
-#include "core/text.hpp"
-#include "dataset/flat_reader.hpp"
-#include "dataset/recipe.hpp"
-#include "dataset/room_reader.hpp"
-#include "io/read/yaml_map.hpp"
+#include "files/read/yaml.hpp"
+#include "model/core/text.hpp"
 #include "pirsim/flat.hpp"
 #include "pirsim/room.hpp"
+#include "rooms/recipe.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -206,7 +204,7 @@ CLI::Option* offer_drawing(CLI::App& command) {
   return home;
 }
 
-constexpr const char* examples = R"(
+constexpr const char* room_examples = R"(
   pirsim room -o room.gltf                                           a small office
   pirsim room --kind meeting --width 6 --depth 4.6 --seats 8 -o room.gltf
   pirsim room --width [5,8] --seats [2,6] --desks islands --number 3 -o room.gltf
@@ -219,8 +217,8 @@ constexpr const char* examples = R"(
 }  // namespace
 
 void add_room_command(CLI::App& app) {
-  offer_drawing(add_command(app, "room", "draw a parametric room or flat and write it as glTF", examples));
-  offer_drawing(add_old_command(app, "home", "the same as room --home", examples))->add_result("true");
+  offer_drawing(add_command(app, "room", "draw a parametric room or flat and write it as glTF", room_examples));
+  offer_drawing(add_old_command(app, "home", "the same as room --home", room_examples))->add_result("true");
 }
 
 }  // namespace pirsim::app

@@ -6,17 +6,17 @@
 #include <iostream>
 
 #include "app/long_work.hpp"
-#include "core/text.hpp"
-#include "io/read/csv_reader.hpp"
+#include "engine/rt/tracer.hpp"
+#include "engine/sim/compiled_study.hpp"
+#include "files/read/csv_reader.hpp"
+#include "model/core/text.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
-#include "rt/tracer.hpp"
-#include "sim/compiled_study.hpp"
-#include "studies/coverage.hpp"
+#include "surveys/coverage.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "app/options.hpp"
-#include "io/files/atomic_file.hpp"
-#include "io/files/compression.hpp"
-#include "io/pages/report.hpp"
+#include "files/disk/compression.hpp"
+#include "files/disk/file.hpp"
+#include "files/write/summary.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/script.hpp"
-#include "studies/summary.hpp"
+#include "show/report.hpp"
 
 namespace pirsim::studies {
 class CoverageStudy;

@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
-#include "core/parallel.hpp"
+#include "model/core/parallel.hpp"
 #include "stats/intervals.hpp"
-#include "stats/kit.hpp"
-#include "stats/logistic.hpp"
+#include "stats/matrix.hpp"
+#include "stats/trees.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "stats/class_shapes.hpp"
+#include "stats/classes.hpp"
 #include "stats/matrix.hpp"
-#include "stats/pooled_classifier.hpp"
+#include "stats/trees.hpp"
 
 namespace pirsim::stats {
 

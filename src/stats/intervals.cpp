@@ -4,10 +4,15 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numeric>
 #include <vector>
 
-#include "stats/kit.hpp"
+#include "model/core/parallel.hpp"
+#include "pirsim/random.hpp"
+#include "stats/linear_algebra.hpp"
+#include "stats/matrix.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -113,6 +118,503 @@ double area_between(std::span<const double> a, std::span<const double> b) {
     while (j < y.size() && y[j] == next) ++j;
   }
   return area;
+}
+
+namespace {
+
+using detail::as_eigen;
+
+double median(std::vector<double> values) { return stats::quantile(values, 0.5); }
+
+/// Median absolute deviation of each column from its median; 1 where that is 0.
+std::vector<double> column_scales(const Matrix<double>& rows) {
+  std::vector<double> scales;
+  for (std::size_t c = 0; c < rows.columns(); ++c) {
+    std::vector<double> values;
+    for (std::size_t r = 0; r < rows.rows(); ++r) values.push_back(rows(r, c));
+    const double centre = median(values);
+    for (double& value : values) value = std::abs(value - centre);
+    const double scale = median(std::move(values));
+    scales.push_back(scale > 0.0 ? scale : 1.0);
+  }
+  return scales;
+}
+
+/// log((x - low) / (high - x)); a value at the very border is moved off it by a billionth of the range.
+double to_open(double value, const Interval& bounds) {
+  const double share = std::clamp((value - bounds.low) / (bounds.high - bounds.low), 1e-9, 1.0 - 1e-9);
+  return std::log(share / (1.0 - share));
+}
+double from_open(double value, const Interval& bounds) {
+  return bounds.low + (bounds.high - bounds.low) / (1.0 + std::exp(-value));
+}
+
+struct Accepted {
+  std::vector<std::size_t> rows;
+  std::vector<double> weights;  ///< sum 1
+};
+
+Accepted accept_nearest(const Matrix<double>& statistics, std::span<const double> observed, double share) {
+  const std::vector<double> scales = column_scales(statistics);
+  std::vector<double> distances(statistics.rows(), 0.0);
+  for (std::size_t r = 0; r < statistics.rows(); ++r) {
+    for (std::size_t c = 0; c < observed.size(); ++c)
+      distances[r] += std::pow((statistics(r, c) - observed[c]) / scales[c], 2);
+    distances[r] = std::sqrt(distances[r]);
+  }
+  Accepted accepted;
+  accepted.rows.resize(statistics.rows());
+  std::iota(accepted.rows.begin(), accepted.rows.end(), std::size_t{0});
+  std::stable_sort(accepted.rows.begin(), accepted.rows.end(),
+                   [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
+  const auto kept = static_cast<std::size_t>(std::ceil(share * static_cast<double>(statistics.rows())));
+  accepted.rows.resize(std::min(kept, statistics.rows()));
+  // The widest is just beyond the last row, so that every kept row has a weight.
+  const double widest = distances[accepted.rows.back()] * (1.0 + 1e-6) + std::numeric_limits<double>::min();
+  double sum = 0.0;
+  for (const std::size_t row : accepted.rows) {
+    accepted.weights.push_back(1.0 - std::pow(distances[row] / widest, 2));
+    sum += accepted.weights.back();
+  }
+  for (double& weight : accepted.weights) weight /= sum;
+  return accepted;
+}
+
+/// Each parameter's regression on the statistics, taken at the observed ones, plus the rows' residuals.
+Eigen::MatrixXd adjust(const Eigen::MatrixXd& parameters, const Eigen::MatrixXd& off, const Eigen::VectorXd& weights) {
+  Eigen::MatrixXd design(off.rows(), off.cols() + 1);
+  design << Eigen::VectorXd::Ones(off.rows()), off;
+  const Eigen::VectorXd root = weights.cwiseSqrt();
+  const Eigen::MatrixXd coefficients =
+      detail::least_squares(root.asDiagonal() * design, root.asDiagonal() * parameters);
+  return parameters - off * coefficients.bottomRows(off.cols());
+}
+
+}  // namespace
+
+ParameterEstimator ParameterEstimator::fit(const Matrix<double>& statistics, const Matrix<double>& parameters) {
+  require(statistics.rows() == parameters.rows() && statistics.rows() > 1,
+          "estimate: rows differ in number or are too few");
+  require_finite(statistics.values(), "estimate: a statistic is not finite");
+  require_finite(parameters.values(), "estimate: a parameter is not finite");
+  const Eigen::RowVectorXd mean = as_eigen(statistics).colwise().mean();
+  Eigen::MatrixXd centred = as_eigen(statistics).rowwise() - mean;
+  const Eigen::RowVectorXd sd = (centred.colwise().squaredNorm() / static_cast<double>(statistics.rows())).cwiseSqrt();
+  const Eigen::RowVectorXd inverse = sd.unaryExpr([](double x) { return x > 1e-12 ? 1.0 / x : 0.0; });
+  centred.array().rowwise() *= inverse.array();
+  const Eigen::RowVectorXd parameter_mean = as_eigen(parameters).colwise().mean();
+  const Eigen::MatrixXd targets = as_eigen(parameters).rowwise() - parameter_mean;
+
+  const auto [u, s, v] = detail::singular_values(centred, detail::Sides::both);
+  const Eigen::ArrayXd squares = s.array().square();
+  const Eigen::MatrixXd rotated = u.transpose() * targets;
+  const auto n = static_cast<double>(statistics.rows());
+
+  ParameterEstimator estimate;
+  estimate.slopes_ = Matrix<double>(parameters.columns(), statistics.columns());
+  for (Eigen::Index p = 0; p < targets.cols(); ++p) {
+    double best_score = std::numeric_limits<double>::infinity();
+    Eigen::ArrayXd best_shrink = Eigen::ArrayXd::Zero(squares.size());
+    for (double exponent = -6.0; exponent <= 3.0; exponent += 0.5) {
+      const Eigen::ArrayXd shrink = squares / (squares + n * std::pow(10.0, exponent));
+      const double fitted = (rotated.col(p).array().square() * shrink * (2.0 - shrink)).sum();
+      const double left = 1.0 - (1.0 + shrink.sum()) / n;  // share of the degrees of freedom; one is the mean's
+      if (left <= 0.0) continue;
+      const double score = std::max(0.0, targets.col(p).squaredNorm() - fitted) / (left * left);
+      if (score < best_score) {
+        best_score = score;
+        best_shrink = shrink;
+      }
+    }
+    const Eigen::ArrayXd safe = (squares > 1e-12 * squares(0)).select(s.array(), 1.0);
+    const Eigen::VectorXd slopes =
+        v * ((squares > 1e-12 * squares(0)).select(best_shrink / safe, 0.0) * rotated.col(p).array()).matrix();
+    const Eigen::VectorXd scaled = slopes.cwiseProduct(inverse.transpose());
+    std::copy(scaled.begin(), scaled.end(), estimate.slopes_.row(static_cast<std::size_t>(p)).begin());
+    estimate.intercept_.push_back(parameter_mean(p) - mean.dot(scaled));
+  }
+  return estimate;
+}
+
+std::vector<double> ParameterEstimator::estimate(std::span<const double> statistics) const {
+  require(statistics.size() == slopes_.columns(), "estimate: another number of statistics than was fitted");
+  std::vector<double> values = intercept_;
+  for (std::size_t p = 0; p < values.size(); ++p)
+    values[p] += std::inner_product(statistics.begin(), statistics.end(), slopes_.row(p).begin(), 0.0);
+  return values;
+}
+
+Matrix<double> ParameterEstimator::estimate(const Matrix<double>& statistics) const {
+  Matrix<double> estimates(statistics.rows(), intercept_.size());
+  for (std::size_t r = 0; r < statistics.rows(); ++r) {
+    const std::vector<double> values = estimate(statistics.row(r));
+    std::copy(values.begin(), values.end(), estimates.row(r).begin());
+  }
+  return estimates;
+}
+
+double AbcPosterior::mean(std::size_t parameter) const {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < values.rows(); ++r) sum += weights[r] * values(r, parameter);
+  return sum;
+}
+
+double AbcPosterior::quantile(std::size_t parameter, double probability) const {
+  std::vector<std::size_t> order(values.rows());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values(a, parameter) < values(b, parameter); });
+  // Each value stands in the middle of its weight; between two of them the quantile is linear.
+  double below = 0.0, last_place = 0.0, last_value = values(order[0], parameter);
+  for (const std::size_t row : order) {
+    const double place = below + 0.5 * weights[row], value = values(row, parameter);
+    if (place >= probability)
+      return place > last_place ? last_value + (value - last_value) * (probability - last_place) / (place - last_place)
+                                : value;
+    below += weights[row];
+    last_place = place;
+    last_value = value;
+  }
+  return last_value;
+}
+
+Interval AbcPosterior::interval(std::size_t parameter, double confidence, double widening) const {
+  const double centre = quantile(parameter, 0.5), tail = 0.5 * (1.0 - confidence);
+  return {centre + widening * (quantile(parameter, tail) - centre),
+          centre + widening * (quantile(parameter, 1.0 - tail) - centre)};
+}
+
+AbcPosterior abc_posterior(const Matrix<double>& parameters, const Matrix<double>& statistics,
+                           std::span<const double> observed, const AbcSettings& settings) {
+  require(parameters.rows() == statistics.rows() && parameters.rows() > 0, "abc: rows differ in number");
+  require(observed.size() == statistics.columns(), "abc: observed and simulated statistics differ in number");
+  require(settings.bounds.empty() || settings.bounds.size() == parameters.columns(), "abc: bounds per parameter");
+  require(settings.accepted > 0.0 && settings.accepted <= 1.0, "abc: accepted share outside (0, 1]");
+  require_finite(statistics.values(), "abc: a statistic is not finite");
+  require_finite(observed, "abc: a statistic is not finite");
+  Accepted accepted = accept_nearest(statistics, observed, settings.accepted);
+  require(accepted.rows.size() >= observed.size() + 2, "abc: too few accepted rows for this many statistics");
+
+  const Matrix<double> kept_parameters = parameters.select_rows(accepted.rows);
+  const Matrix<double> kept_statistics = statistics.select_rows(accepted.rows);
+  Eigen::MatrixXd values = as_eigen(kept_parameters);
+  for (std::size_t p = 0; p < settings.bounds.size(); ++p)
+    for (double& value : values.col(static_cast<Eigen::Index>(p))) value = to_open(value, settings.bounds[p]);
+  const Eigen::MatrixXd off = as_eigen(kept_statistics).rowwise() - as_eigen(observed).transpose();
+  values = adjust(values, off, as_eigen(std::span<const double>(accepted.weights)));
+  for (std::size_t p = 0; p < settings.bounds.size(); ++p)
+    for (double& value : values.col(static_cast<Eigen::Index>(p))) value = from_open(value, settings.bounds[p]);
+  return {detail::to_matrix(values), std::move(accepted.weights)};
+}
+
+}  // namespace pirsim::stats
+
+// The global envelope test: how extreme each curve is anywhere, and among all curves.
+
+// Ranks of the values of one entry, from the smallest up.
+
+namespace pirsim::stats::detail {
+
+/// Calls use(begin, end) for every run of equal values.
+template <typename Use>
+void for_each_tie(const std::vector<double>& sorted, const Use& use) {
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
+    use(begin, end);
+  }
+}
+
+/// The rank from the largest value down is this less the rank from below. n: number of values.
+inline double top_rank(PointwiseRank kind, std::size_t n) {
+  return kind == PointwiseRank::continuous ? double(n) : double(n + 1);
+}
+
+/// Place of sorted[i] between its neighbours, in (0, n). Ref: [Hahn2015] in the form of [Myllymaki2024].
+template <typename Sorted>
+double continuous_rank(const Sorted& sorted, std::size_t n, std::size_t i) {
+  const std::size_t last = n - 1;
+  if (i == 0) return std::exp(-(sorted[1] - sorted[0]) / (sorted[last] - sorted[1]));
+  if (i == last) {
+    return static_cast<double>(n) - std::exp(-(sorted[last] - sorted[last - 1]) / (sorted[last - 1] - sorted[0]));
+  }
+  return static_cast<double>(i) + (sorted[i] - sorted[i - 1]) / (sorted[i + 1] - sorted[i - 1]);
+}
+
+/// Rank of each of the equal values sorted[begin] to sorted[end - 1]. kind: not random_ties. Of a tied pair the formula
+/// of continuous_rank gives the middle too, except at an end.
+template <typename Sorted>
+double shared_rank(PointwiseRank kind, const Sorted& sorted, std::size_t n, std::size_t begin, std::size_t end) {
+  if (kind == PointwiseRank::middle_ties) return 0.5 * static_cast<double>(begin + 1 + end);
+  return end - begin > 1 ? 0.5 * static_cast<double>(begin + end) : continuous_rank(sorted, n, begin);
+}
+
+}  // namespace pirsim::stats::detail
+
+namespace pirsim::stats {
+namespace {
+
+/// Ranks of a column from its smallest value up; the rank from the largest down is top - rank.
+struct ColumnRanks {
+  std::vector<double> from_below;  ///< (n_rows)
+  double top = 0.0;
+};
+
+ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, Stream stream) {
+  const std::size_t n = values.size();
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint32_t> lot(n, 0);
+  if (kind == PointwiseRank::random_ties) std::generate(lot.begin(), lot.end(), [&] { return stream.next_u32(); });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (values[a] != values[b]) return values[a] < values[b];
+    return lot[a] != lot[b] ? lot[a] < lot[b] : a < b;
+  });
+  std::vector<double> sorted(n);
+  for (std::size_t i = 0; i < n; ++i) sorted[i] = values[order[i]];
+
+  ColumnRanks ranks{std::vector<double>(n), detail::top_rank(kind, n)};
+  detail::for_each_tie(sorted, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ranks.from_below[order[i]] = kind == PointwiseRank::random_ties
+                                       ? static_cast<double>(i + 1)
+                                       : detail::shared_rank(kind, sorted, sorted.size(), begin, end);
+    }
+  });
+  return ranks;
+}
+
+/// Ranks of every entry from either side; small is extreme.
+struct SideRanks {
+  Matrix<double> low, high;
+};
+
+SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& settings) {
+  SideRanks sides{Matrix<double>(rows.rows(), rows.columns()), Matrix<double>(rows.rows(), rows.columns())};
+  std::size_t column = 0;
+  const auto rank = [&](std::size_t c) {
+    std::vector<double> values(rows.rows());
+    for (std::size_t r = 0; r < rows.rows(); ++r) values[r] = rows(r, c);
+    return rank_column(values, settings.rank,
+                       Stream({settings.seed, 0, static_cast<std::uint32_t>(c), Purpose::tied_ranks}));
+  };
+  const auto store = [&](ColumnRanks& ranks) {
+    for (std::size_t r = 0; r < rows.rows(); ++r) {
+      sides.low(r, column) = ranks.from_below[r];
+      sides.high(r, column) = ranks.top - ranks.from_below[r];
+    }
+    ++column;
+  };
+  ordered_parallel<ColumnRanks>(rows.columns(), settings.threads, rank, store);
+  return sides;
+}
+
+/// (n_rows x n_columns) per row its pointwise ranks from the nearer side, smallest first.
+Matrix<double> sorted_ranks(const SideRanks& sides) {
+  Matrix<double> sorted = sides.low;
+  for (std::size_t i = 0; i < sorted.values().size(); ++i)
+    sorted.values()[i] = std::min(sorted.values()[i], sides.high.values()[i]);
+  for (std::size_t r = 0; r < sorted.rows(); ++r) std::sort(sorted.row(r).begin(), sorted.row(r).end());
+  return sorted;
+}
+
+std::vector<double> share_at_least_as_extreme(const Matrix<double>& sorted) {
+  const std::size_t n = sorted.rows();
+  const auto less = [&](std::size_t a, std::size_t b) {
+    const auto x = sorted.row(a), y = sorted.row(b);
+    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  };
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), less);
+  std::vector<double> share(n);
+  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+    while (end < n && !less(order[begin], order[end])) ++end;
+    for (std::size_t i = begin; i < end; ++i) share[order[i]] = static_cast<double>(end) / static_cast<double>(n);
+  }
+  return share;
+}
+
+/// The envelope excludes the first row's entry once all rows at least as far out as it on that side are cut away.
+double adjusted_p(const Matrix<double>& side, const std::vector<double>& p, std::size_t column) {
+  double largest = 0.0;
+  for (std::size_t r = 0; r < side.rows(); ++r)
+    if (side(r, column) <= side(0, column)) largest = std::max(largest, p[r]);
+  return largest;
+}
+
+double median_without_first(const Matrix<double>& rows, std::size_t column) {
+  std::vector<double> values;
+  for (std::size_t r = 1; r < rows.rows(); ++r) values.push_back(rows(r, column));
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, double alpha, GlobalEnvelope& envelope) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  envelope.lower.assign(rows.columns(), infinity);
+  envelope.upper.assign(rows.columns(), -infinity);
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (p[r] <= alpha) continue;
+    for (std::size_t c = 0; c < rows.columns(); ++c) {
+      envelope.lower[c] = std::min(envelope.lower[c], rows(r, c));
+      envelope.upper[c] = std::max(envelope.upper[c], rows(r, c));
+    }
+  }
+}
+
+}  // namespace
+
+GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
+                                    const EnvelopeSettings& settings) {
+  require(simulated.rows() > 0, "envelope: no simulated row");
+  require(simulated.columns() > 0, "envelope: nothing to compare");
+  require(observed.size() == simulated.columns(), "envelope: observed and simulated rows differ in length");
+  require(settings.alpha > 0.0 && settings.alpha < 1.0, "envelope: alpha must lie between 0 and 1");
+  require_finite(observed, "envelope: an observed statistic is not finite");
+  require_finite(simulated.values(), "envelope: a simulated statistic is not finite");
+  Matrix<double> rows(simulated.rows() + 1, observed.size());
+  std::copy(observed.begin(), observed.end(), rows.values().begin());
+  std::copy(simulated.values().begin(), simulated.values().end(), rows.row(1).data());
+
+  const SideRanks sides = rank_sides(rows, settings);
+  const std::vector<double> p = share_at_least_as_extreme(sorted_ranks(sides));
+  GlobalEnvelope envelope;
+  envelope.p = p[0];
+  for (std::size_t c = 0; c < rows.columns(); ++c) {
+    envelope.adjusted_p.push_back(std::min(adjusted_p(sides.low, p, c), adjusted_p(sides.high, p, c)));
+    envelope.median.push_back(median_without_first(rows, c));
+  }
+  draw_envelope(rows, p, settings.alpha, envelope);
+  return envelope;
+}
+
+namespace {
+
+constexpr double rounding = 1e-6;  ///< of ranks; rows this near to a bound are looked at
+
+/// Sorted values with one more put in.
+struct Inserted {
+  std::span<const double> sorted;
+  std::size_t at = 0;
+  double value = 0.0;
+  double operator[](std::size_t i) const { return i < at ? sorted[i] : i == at ? value : sorted[i - 1]; }
+};
+
+}  // namespace
+
+/// One entry's ranks once the observed value is among them. Values above it move up by one; only its neighbours, and
+/// the values at both ends, which a continuous rank looks at, need ranks of their own.
+struct EnvelopeReference::Column {
+  struct Special {
+    double value = std::nan(""), rank = 0.0;
+  };
+  double observed = 0.0, own_rank = 0.0;
+  Special first, before, after, last;
+
+  [[nodiscard]] double rank(double value, double among_simulated) const {
+    if (value == observed) return own_rank;
+    if (value < observed) {
+      if (value == before.value) return before.rank;
+      return value == first.value ? first.rank : among_simulated;
+    }
+    if (value == after.value) return after.rank;
+    return value == last.value ? last.rank : among_simulated + 1.0;
+  }
+};
+
+EnvelopeReference::EnvelopeReference(Matrix<double> simulated, PointwiseRank rank)
+    : simulated_(std::move(simulated)),
+      sorted_(simulated_.columns(), simulated_.rows()),
+      from_below_(simulated_.rows(), simulated_.columns()),
+      least_(simulated_.rows(), std::numeric_limits<double>::infinity()),
+      rank_(rank) {
+  require(rank != PointwiseRank::random_ties, "envelope: a reference can't put ties in random order");
+  require(simulated_.rows() > 1, "envelope: fewer than two simulated rows");
+  require(simulated_.columns() > 0, "envelope: nothing to compare");
+  require_finite(simulated_.values(), "envelope: a simulated statistic is not finite");
+  const std::size_t n = simulated_.rows();
+  std::vector<double> values(n);
+  for (std::size_t c = 0; c < simulated_.columns(); ++c) {
+    for (std::size_t r = 0; r < n; ++r) values[r] = simulated_(r, c);
+    std::sort(values.begin(), values.end());
+    std::copy(values.begin(), values.end(), sorted_.row(c).begin());
+    std::vector<double> ranks(n);  // of values[i]
+    detail::for_each_tie(values, [&](std::size_t begin, std::size_t end) {
+      std::fill(ranks.begin() + static_cast<std::ptrdiff_t>(begin), ranks.begin() + static_cast<std::ptrdiff_t>(end),
+                detail::shared_rank(rank_, values, n, begin, end));
+    });
+    for (std::size_t r = 0; r < n; ++r) {
+      const auto i = std::lower_bound(values.begin(), values.end(), simulated_(r, c)) - values.begin();
+      const double below = from_below_(r, c) = ranks[static_cast<std::size_t>(i)];
+      least_[r] = std::min({least_[r], below, detail::top_rank(rank_, n) - below});
+    }
+  }
+}
+
+EnvelopeReference::Column EnvelopeReference::insert(std::size_t entry, double observed) const {
+  const std::span<const double> sorted = sorted_.row(entry);
+  const std::size_t n = sorted.size() + 1;
+  const auto lower = static_cast<std::size_t>(std::ranges::lower_bound(sorted, observed) - sorted.begin());
+  const auto upper = static_cast<std::size_t>(std::ranges::upper_bound(sorted, observed) - sorted.begin());
+  const Inserted all{sorted, lower, observed};
+  Column column;
+  column.observed = observed;
+  column.own_rank = detail::shared_rank(rank_, all, n, lower, upper + 1);
+  /// Of the simulated value sorted[i], which differs from the observed one.
+  const auto special = [&](std::size_t i) {
+    const std::size_t shift = i < lower ? 0 : 1;
+    const auto tied = std::equal_range(sorted.begin(), sorted.end(), sorted[i]);
+    return Column::Special{
+        sorted[i], detail::shared_rank(rank_, all, n, static_cast<std::size_t>(tied.first - sorted.begin()) + shift,
+                                       static_cast<std::size_t>(tied.second - sorted.begin()) + shift)};
+  };
+  if (lower > 0) {
+    column.first = special(0);
+    column.before = special(lower - 1);
+  }
+  if (upper < sorted.size()) {
+    column.after = special(upper);
+    column.last = special(sorted.size() - 1);
+  }
+  return column;
+}
+
+double EnvelopeReference::p(std::span<const double> observed) const {
+  require(observed.size() == simulated_.columns(), "envelope: observed and simulated rows differ in length");
+  require_finite(observed, "envelope: an observed statistic is not finite");
+  const double top = detail::top_rank(rank_, simulated_.rows() + 1);
+  std::vector<Column> columns;
+  std::vector<double> own;  // the observed row's pointwise ranks, smallest first
+  for (std::size_t c = 0; c < observed.size(); ++c) {
+    columns.push_back(insert(c, observed[c]));
+    own.push_back(std::min(columns.back().own_rank, top - columns.back().own_rank));
+  }
+  std::sort(own.begin(), own.end());
+  const auto rank_of = [&](std::size_t r, std::size_t c) {
+    const double rank = columns[c].rank(simulated_(r, c), from_below_(r, c));
+    return std::min(rank, top - rank);
+  };
+  std::size_t as_extreme = 1;  // the observed row itself
+  std::vector<double> ranks(observed.size());
+  for (std::size_t r = 0; r < simulated_.rows(); ++r) {
+    // One value more lowers no rank, counted from either end, and raises it by two at most.
+    if (least_[r] > own[0] + rounding) continue;
+    if (least_[r] + 2.0 < own[0] - rounding) {
+      ++as_extreme;
+      continue;
+    }
+    double smallest = top;
+    for (std::size_t c = 0; c < observed.size() && smallest >= own[0]; ++c)
+      smallest = std::min(smallest, rank_of(r, c));
+    if (smallest > own[0]) continue;
+    if (smallest == own[0]) {
+      for (std::size_t c = 0; c < observed.size(); ++c) ranks[c] = rank_of(r, c);
+      std::sort(ranks.begin(), ranks.end());
+      if (ranks > own) continue;
+    }
+    ++as_extreme;
+  }
+  return static_cast<double>(as_extreme) / static_cast<double>(simulated_.rows() + 1);
 }
 
 }  // namespace pirsim::stats

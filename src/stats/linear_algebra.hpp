@@ -1,12 +1,15 @@
+#pragma once
+
 // Our matrices seen as Eigen's, and its decompositions. These take Eigen half a minute each to compile: they are
 // compiled once, in linear_algebra.cpp.
-#pragma once
 
 // The same sums on every processor: products are cut into blocks for fixed sizes of caches instead of those of the
 // machine, and roots don't begin with an estimate that differs from one maker to the next.
 #define EIGEN_NO_CPUID
 #define EIGEN_FAST_MATH 0
 #include <Eigen/Core>
+
+#include <span>
 
 #include "stats/matrix.hpp"
 
@@ -70,5 +73,20 @@ enum class Sides { left, both };
 [[nodiscard]] Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
 /// As many orthonormal columns as the matrix has, which span the same.
 [[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& matrix);
+
+// Rows by their class: what discriminants and class shapes begin with.
+
+/// Throws Error(usage) unless there are rows and columns, as many labels as rows, all in [0, n_classes), each class at
+/// least `fewest` times, and all features finite.
+void check_labelled(const Matrix<float>& features, std::span<const int> labels, int n_classes, int fewest);
+
+struct Groups {
+  Eigen::MatrixXd means;      ///< (n_classes x n_columns)
+  Eigen::MatrixXd residuals;  ///< (n_rows x n_columns) rows less the mean of their class
+};
+[[nodiscard]] Groups group(const Matrix<float>& features, std::span<const int> labels, int n_classes);
+
+/// Divides each column by its root mean square; one that is all but 0 becomes 0. Returns what was multiplied with.
+Eigen::RowVectorXd scale_columns(Eigen::MatrixXd& residuals);
 
 }  // namespace pirsim::stats::detail

@@ -3,7 +3,7 @@
 #include <exception>
 #include <iostream>
 
-#include "pir/calibration.hpp"
+#include "engine/pir/calibration.hpp"
 #include "pirsim/io.hpp"
 
 namespace {

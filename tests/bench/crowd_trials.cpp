@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "core/parallel.hpp"
+#include "model/core/parallel.hpp"
 #include "pirsim/error.hpp"
 #include "stats/intervals.hpp"
 #include "support/crowd_watch.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "calibrate/errors.hpp"
+#include "logs/calibrate.hpp"
 #include "pirsim/calibrate.hpp"
 
 namespace {

@@ -13,16 +13,16 @@
 #include <thread>
 #include <vector>
 
-#include "effects/catalogue.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "engine/rt/direct_tracer.hpp"
+#include "engine/sim/compiled_study.hpp"
+#include "engine/sim/observer.hpp"
+#include "engine/sim/run_state.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
-#include "rt/direct_tracer.hpp"
-#include "sim/compiled_study.hpp"
-#include "sim/run_state.hpp"
-#include "sim/solids.hpp"
 #include "support/shipped.hpp"
 
 using namespace pirsim;

@@ -1,8 +1,8 @@
 // Tables of measured sums. What is accepted has no negative count and no cell twice.
 #include <set>
 
+#include "files/read/csv_reader.hpp"
 #include "fuzz_target.hpp"
-#include "io/read/csv_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pirsim::test::read_as_file(data, size, ".csv", [](const std::filesystem::path& file) {

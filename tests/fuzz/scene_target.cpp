@@ -4,7 +4,7 @@
 
 #include "fuzz_target.hpp"
 #include "pirsim/io.hpp"
-#include "studies/suggestion.hpp"
+#include "rooms/suggested_marks.hpp"
 
 namespace {
 

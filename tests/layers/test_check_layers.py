@@ -29,22 +29,11 @@ class SplitNames(unittest.TestCase):
                              ["tests/unit/door_test.cpp:2:"])
 
 
-class PartsOfFields(unittest.TestCase):
-    def test_only_the_whole_includes_its_parts(self):
-        with tempfile.TemporaryDirectory() as folder:
-            root = pathlib.Path(folder)
-            for name in ("src/schema/fields.hpp", "src/schema/fields/doors.hpp", "src/io/read/door.cpp"):
-                (root / name).parent.mkdir(parents=True, exist_ok=True)
-                (root / name).write_text('\n#include "schema/fields/accepted.hpp"\n')
-            found = [text for text in check_layers.violations(root) if "schema/fields" in text]
-            self.assertEqual([text.split(" ")[0] for text in found], ["src/io/read/door.cpp:2:"])
-
-
 class ListedAgain(unittest.TestCase):
     def found_in(self, text):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name, content in (("src/schema/fields/doors.hpp", DESCRIPTION), ("src/io/door.cpp", text)):
+            for name, content in (("src/model/schema/fields.hpp", DESCRIPTION), ("src/files/door.cpp", text)):
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(content)
             return list(check_layers.listed_again(root))
@@ -52,7 +41,7 @@ class ListedAgain(unittest.TestCase):
     def test_all_members_line_by_line(self):
         found = self.found_in("\n" + "".join(f"  print(door.{name});\n" for name in NAMES))
         self.assertEqual(len(found), 1)
-        self.assertTrue(found[0].startswith("src/io/door.cpp:2: lists all fields of DoorSpec again"), found)
+        self.assertTrue(found[0].startswith("src/files/door.cpp:2: lists all fields of DoorSpec again"), found)
 
     def test_all_keys_or_pointers(self):
         self.assertEqual(len(self.found_in("".join(f'add("{name}", &DoorSpec::{name});\n' for name in NAMES))), 1)
@@ -94,11 +83,11 @@ class Columns(unittest.TestCase):
     def test_they_are_told_with_their_place(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name, content in (("src/schema/columns.cpp", self.LISTS), ("src/io/a.cpp", '\nf("time_s,people,day");\n')):
+            for name, content in (("src/model/schema/columns.cpp", self.LISTS), ("src/files/a.cpp", '\nf("time_s,people,day");\n')):
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(content)
             self.assertEqual(list(check_layers.second_lists(root)),
-                             ["src/io/a.cpp:2: columns of 'rows' are listed a second time: take them from their list"])
+                             ["src/files/a.cpp:2: columns of 'rows' are listed a second time: take them from their list"])
 
 
 if __name__ == "__main__":

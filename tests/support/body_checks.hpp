@@ -7,8 +7,8 @@
 #include <numbers>
 #include <variant>
 
-#include "body/motion.hpp"
-#include "body/skeleton.hpp"
+#include "engine/body/motion.hpp"
+#include "engine/body/skeleton.hpp"
 #include "support/catch.hpp"
 
 namespace pirsim::body::test {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/sim/run_state.hpp"
 #include "pirsim/random.hpp"
-#include "sim/run_state.hpp"
 #include "support/shipped.hpp"
 
 namespace pirsim::test {

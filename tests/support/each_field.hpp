@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "schema/fields.hpp"
+#include "model/schema/fields.hpp"
 
 namespace pirsim::test {
 

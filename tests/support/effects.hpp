@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "effects/catalogue.hpp"
+#include "engine/effects/catalogue.hpp"
 #include "support/shipped.hpp"
 
 namespace pirsim::test {

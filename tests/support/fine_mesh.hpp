@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "geom/triangle_surface.hpp"
+#include "model/geom/shapes.hpp"
 #include "support/random_scene.hpp"
 
 namespace pirsim::testing {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stats/matrix.hpp"
-#include "stats/pooled_classifier.hpp"
+#include "stats/trees.hpp"
 
 namespace pirsim::test {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "body/motion.hpp"
-#include "sim/natural_motion.hpp"
+#include "engine/body/motion.hpp"
+#include "engine/sim/natural_motion.hpp"
 
 namespace pirsim::body::test {
 

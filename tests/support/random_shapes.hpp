@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "geom/triangle_surface.hpp"
+#include "model/geom/shapes.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/shapes.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "effects/catalogue.hpp"
+#include "engine/effects/catalogue.hpp"
 #include "pirsim/random.hpp"
 
 namespace pirsim::test {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/rt/tracer.hpp"
 #include "pirsim/rays.hpp"
-#include "rt/tracer.hpp"
 
 namespace pirsim::test {
 

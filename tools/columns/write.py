@@ -19,7 +19,7 @@ def tables(compiler):
     with tempfile.TemporaryDirectory() as folder:
         program = pathlib.Path(folder) / "describe"
         subprocess.run([compiler, "-std=c++20", f"-I{ROOT}/include", f"-I{ROOT}/src",
-                        ROOT / "tools/columns/describe.cpp", ROOT / "src/schema/columns.cpp", "-o", program], check=True)
+                        ROOT / "tools/columns/describe.cpp", ROOT / "src/model/schema/columns.cpp", "-o", program], check=True)
         text = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     return {match[1]: match[0] for match in TABLE.finditer(text)}
 

@@ -1,6 +1,6 @@
-// Prints the description of all specs (schema/fields.hpp) as JSON: types and default values as Python writes them, what
-// numbers are accepted, what each field means. tools/specs/write.py compiles it, and writes Python's classes and the
-// pages' tables of keys from what it prints.
+// Prints the description of all specs (model/schema/fields.hpp) as JSON: types and default values as Python writes
+// them, what numbers are accepted, what each field means. tools/specs/write.py compiles it, and writes Python's classes
+// and the pages' tables of keys from what it prints.
 #include <array>
 #include <charconv>
 #include <iostream>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "schema/dome.hpp"
-#include "schema/fields.hpp"
+#include "files/read/sensor_reader.cpp"
+#include "model/schema/fields.hpp"
 
 namespace pirsim {
 namespace {

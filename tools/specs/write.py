@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what follows from the description of the specs (src/schema/fields): Python's classes,
+"""Writes what follows from the description of the specs (src/model/schema/fields.hpp): Python's classes,
 python/pirsim/specs.py, and the tables of keys on pages, between `<!-- keys: ... -->` and `<!-- end of keys -->`.
 
 Usage: write.py [--check] [COMPILER]   --check: says which of them isn't as it would be written, and exits with 1
@@ -26,7 +26,7 @@ Each class is one of the library's specs, with the same fields, units and defaul
 Points are (x, y, z) in metres in glTF's frame (right-handed, +Y up, floor in XZ), floor points are (x, z). Lists and
 dicts are ordinary ones. Nothing is checked before `pirsim.compile()`, which then names what it refuses.
 
-Written by tools/specs/write.py from src/schema/fields; what has a form of its own is in _spec_parts.py.
+Written by tools/specs/write.py from src/model/schema/fields.hpp; what has a form of its own is in _spec_parts.py.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def main():
     others = [file for file, text in written.items() if not file.exists() or file.read_text(encoding="utf-8") != text]
     for file in others:
         if "--check" in sys.argv:
-            print(f"{file.relative_to(ROOT)}:1: isn't what src/schema/fields describes; tools/specs/write.py writes it")
+            print(f"{file.relative_to(ROOT)}:1: isn't what src/model/schema/fields.hpp describes; tools/specs/write.py writes it")
         else:
             file.write_text(written[file], encoding="utf-8")
     return 1 if others and "--check" in sys.argv else 0

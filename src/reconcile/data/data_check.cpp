@@ -1,10 +1,80 @@
 #include "reconcile/data/data_check.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
 
-#include "reconcile/data/data_checks.hpp"
+#include "reconcile/data/measured.hpp"
+
+// The parts of the look at the file. Private to reconcile.
 
 namespace pirsim::reconcile {
+
+/// Runs of one dataset, measured or simulated: they outlive it.
+struct DatasetRows {
+  std::span<const Series> runs;
+  std::size_t n_sensors = 0;
+
+  [[nodiscard]] std::size_t n_rows() const noexcept {
+    std::size_t n = 0;
+    for (const Series& run : runs) n += run.n_rows(n_sensors);
+    return n;
+  }
+};
+[[nodiscard]] inline std::uint8_t bit_of(const Series& run, std::size_t row, std::size_t sensor,
+                                         std::size_t n_sensors) noexcept {
+  return run.bits[row * n_sensors + sensor];
+}
+
+// By chance: by how much less likely than this level something must be to be told. Rows that follow one another aren't
+// independent, so that a chance that is computed as if they were is too small: hence a level so low (assumed).
+inline constexpr double log_level = -20.7;  ///< natural logarithm of 1e-9
+
+inline constexpr std::size_t fewest_edges = 20;  ///< by which columns are compared, and a logger's clock is read
+inline constexpr double may_differ = 0.02;       ///< share of edges by which nearly equal columns may differ (assumed)
+inline constexpr std::size_t longest_period = 60;  ///< rows: gateways report once a minute at least (assumed)
+inline constexpr double model_has_it = 0.9;  ///< of a share that is 1 in the data: the model's own runs come near it
+
+/// How far the model's own datasets go; 0 without any.
+[[nodiscard]] double greatest_of(std::span<const DatasetRows> pilot,
+                                 const std::function<double(const DatasetRows&)>& of);
+
+/// Rows that stand in two places, from `row` and `other_row` on.
+struct Repeat {
+  std::size_t run = 0, row = 0;
+  std::size_t other_run = 0, other_row = 0;
+  std::size_t n_rows = 0;
+  /// Bits in these rows after Lempel and Ziv: what follows from rows before it, as a steady beat does, adds nothing.
+  double information = 0.0;
+};
+/// Those with most information first, one of a pair of runs and a shift. Rows that go on as their own repeat don't
+/// count, as a fan's to and fro, nor do two runs of one trial, whose choreography comes again, nor parts that stand at
+/// the same time in both runs: what goes by the clock does that. A whole run that stands in another trial counts.
+struct Repeats {
+  static constexpr std::size_t most = 3;
+  std::vector<Repeat> between_runs, in_a_run;  ///< at most so many
+};
+[[nodiscard]] Repeats greatest_repeats(const DatasetRows& data);
+
+/// Adds what it finds. pilot: datasets of the model, whose runs have one replicate.
+using DataCheck = void(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                       std::vector<DataFinding>& findings);
+
+DataCheck compare_columns;  ///< two that are equal, nearly, or opposite
+DataCheck find_constant;    ///< a column of ones
+DataCheck find_silent;      ///< a column without any
+DataCheck find_beats;       ///< a column with ones on a grid
+DataCheck find_polls;       ///< columns that change on a grid only
+DataCheck find_repeat;      ///< rows that stand twice
+DataCheck find_silence;     ///< rows without any motion
 
 double greatest_of(std::span<const DatasetRows> pilot, const std::function<double(const DatasetRows&)>& of) {
   double greatest = 0.0;
@@ -43,6 +113,541 @@ std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& mea
 
 bool any_impossible(std::span<const DataFinding> findings) noexcept {
   return std::ranges::any_of(findings, &DataFinding::is_impossible);
+}
+
+// Columns that no sensor's output is like.
+
+namespace {
+
+using What = DataFinding::What;
+
+constexpr std::size_t fewest_beats = 12;  ///< in a run: what sweeps to and fro keeps to a grid of rows for a while
+
+// Two columns: rows in which one of them changes, and those in which both do.
+
+enum class Likeness { equal, opposite };
+
+struct Edges {
+  std::size_t n = 0, n_alike = 0;
+  [[nodiscard]] double share() const noexcept {
+    return (static_cast<double>(n_alike) + 1.0) / (static_cast<double>(n) + 2.0);
+  }
+};
+
+Edges edges_of(const DatasetRows& data, std::size_t one, std::size_t other, Likeness likeness) {
+  Edges edges;
+  for (const Series& run : data.runs) {
+    for (std::size_t row = 1; row < run.n_rows(data.n_sensors); ++row) {
+      const auto bit = [&](std::size_t back, std::size_t sensor) {
+        return bit_of(run, row - back, sensor, data.n_sensors);
+      };
+      const std::uint8_t a = bit(0, one), b = bit(0, other), a_before = bit(1, one), b_before = bit(1, other);
+      if (std::max({a, b, a_before, b_before}) == unknown_bit || (a == a_before && b == b_before)) continue;
+      ++edges.n;
+      const bool both = a != a_before && b != b_before;
+      edges.n_alike += both && (a == b) == (likeness == Likeness::equal) ? 1 : 0;
+    }
+  }
+  return edges;
+}
+
+/// Logarithm of the chance that so many of them or more are alike, each with probability q: a bound.
+double log_chance(const Edges& edges, double q) {
+  const auto n = static_cast<double>(edges.n), k = static_cast<double>(edges.n - edges.n_alike);
+  return std::log(k + 1.0) + std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) +
+         (n - k) * std::log(q);
+}
+
+}  // namespace
+
+void compare_columns(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                     std::vector<DataFinding>& findings) {
+  for (std::size_t other = 1; other < data.n_sensors; ++other) {
+    for (std::size_t one = 0; one < other; ++one) {
+      for (const auto& [likeness, what] :
+           {std::pair(Likeness::equal, What::equal_columns), std::pair(Likeness::opposite, What::opposite_columns)}) {
+        const Edges edges = edges_of(data, one, other, likeness);
+        const auto n_unlike = static_cast<double>(edges.n - edges.n_alike);
+        if (edges.n < fewest_edges || n_unlike > may_differ * static_cast<double>(edges.n)) continue;
+        const double usual =
+            greatest_of(pilot, [&](const DatasetRows& d) { return edges_of(d, one, other, likeness).share(); });
+        const double chance = log_chance(edges, usual);
+        if (chance > log_level) continue;
+        findings.push_back({.what = what,
+                            .sensors = {frame.sensors[one], frame.sensors[other]},
+                            .n_rows = data.n_rows(),
+                            .n_exceptions = edges.n - edges.n_alike,
+                            .chance = std::exp(chance)});
+      }
+    }
+  }
+}
+
+namespace {
+
+// One column.
+
+}  // namespace
+
+/// All known rows are 1, the first ones too, though the model's runs of these trials begin without.
+void find_constant(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                   std::vector<DataFinding>& findings) {
+  for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
+    std::size_t n_known = 0, n_ones = 0;
+    double chance = 0.0;
+    for (const Series& run : data.runs) {
+      for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
+        const std::uint8_t bit = bit_of(run, row, sensor, data.n_sensors);
+        n_known += bit != unknown_bit ? 1 : 0;
+        n_ones += bit == 1 ? 1 : 0;
+      }
+      double n = 0.0, n_begin_so = 0.0;
+      for (const DatasetRows& dataset : pilot) {
+        for (const Series& simulated : dataset.runs) {
+          if (simulated.trial != run.trial || simulated.bits.empty()) continue;
+          n += 1.0;
+          n_begin_so += bit_of(simulated, 0, sensor, data.n_sensors) == 1 ? 1.0 : 0.0;
+        }
+      }
+      if (!run.bits.empty() && run.bits[sensor] == 1) chance += std::log((n_begin_so + 1.0) / (n + 2.0));
+    }
+    if (n_known == 0) continue;
+    if (n_ones == n_known && chance <= log_level) {
+      findings.push_back({.what = What::constant_column,
+                          .sensors = {frame.sensors[sensor]},
+                          .n_rows = n_known,
+                          .chance = std::exp(chance)});
+    }
+  }
+}
+
+/// No row is 1, though every realization of the model has some: a dead sensor is in the catalogue.
+void find_silent(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                 std::vector<DataFinding>& findings) {
+  const auto counts = [](const DatasetRows& of, std::size_t sensor) {
+    std::pair<std::size_t, std::size_t> known_and_ones;
+    for (const Series& run : of.runs) {
+      for (std::size_t row = 0; row < run.n_rows(of.n_sensors); ++row) {
+        const std::uint8_t bit = bit_of(run, row, sensor, of.n_sensors);
+        known_and_ones.first += bit != unknown_bit ? 1 : 0;
+        known_and_ones.second += bit == 1 ? 1 : 0;
+      }
+    }
+    return known_and_ones;
+  };
+  for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
+    const auto [n_known, n_ones] = counts(data, sensor);
+    if (n_known == 0 || n_ones > 0) continue;
+    const auto moves = [&](const DatasetRows& d) { return counts(d, sensor).second > 0; };
+    if (!std::ranges::all_of(pilot, moves)) continue;
+    findings.push_back(
+        {.what = What::silent_column, .sensors = {frame.sensors[sensor]}, .n_rows = n_known, .is_impossible = false});
+  }
+}
+
+namespace {
+
+bool is_alone(const Series& run, std::size_t row, std::size_t sensor, std::size_t n_sensors) {
+  return row > 0 && row + 1 < run.n_rows(n_sensors) && bit_of(run, row, sensor, n_sensors) == 1 &&
+         bit_of(run, row - 1, sensor, n_sensors) == 0 && bit_of(run, row + 1, sensor, n_sensors) == 0;
+}
+
+/// Of a run: ones on a grid of so many rows, which begins anywhere.
+struct Beat {
+  std::size_t n = 0, n_missing = 0;  ///< rows of the grid, those without a 1
+  std::size_t n_alone = 0;           ///< those with a 1 between two zeros
+};
+
+Beat beat_of(const Series& run, std::size_t sensor, std::size_t n_sensors, std::size_t period, std::size_t first) {
+  Beat beat;
+  const std::size_t n_rows = run.n_rows(n_sensors);
+  for (std::size_t row = first; row < n_rows; row += period) {
+    const std::uint8_t bit = bit_of(run, row, sensor, n_sensors);
+    if (bit == unknown_bit) continue;
+    ++beat.n;
+    if (bit == 0 && ++beat.n_missing > 1 + n_rows / period / 50) return {n_rows / period, n_rows / period, 0};
+    beat.n_alone += is_alone(run, row, sensor, n_sensors) ? 1 : 0;
+  }
+  return beat;
+}
+
+struct Beats {
+  double share = 0.0;   ///< of the grids' rows with a 1, in each run with the best grid
+  double chance = 0.0;  ///< logarithm: that as many of the ones that stand alone are on the grid
+};
+
+Beats beats_of(const DatasetRows& data, std::size_t sensor, std::size_t period) {
+  Beats beats;
+  double n = 0.0, n_missing = 0.0;
+  const double grids = std::log(static_cast<double>(period));
+  for (const Series& run : data.runs) {
+    Edges alone;
+    for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row)
+      alone.n += is_alone(run, row, sensor, data.n_sensors) ? 1 : 0;
+    Beat best;
+    double least = 2.0;
+    for (std::size_t first = 0; first < std::min(period, run.n_rows(data.n_sensors)); ++first) {
+      const Beat beat = beat_of(run, sensor, data.n_sensors, period, first);
+      const double missing = beat.n == 0 ? 2.0 : static_cast<double>(beat.n_missing) / static_cast<double>(beat.n);
+      if (missing > least || (missing == least && beat.n_alone <= best.n_alone)) continue;
+      best = beat;
+      least = missing;
+    }
+    if (best.n < fewest_beats) continue;
+    n += static_cast<double>(best.n);
+    n_missing += static_cast<double>(best.n_missing);
+    alone.n_alike = best.n_alone;
+    beats.chance += std::min(0.0, grids + log_chance(alone, 1.0 / static_cast<double>(period)));
+  }
+  beats.share = n > 0.0 ? 1.0 - n_missing / n : 0.0;
+  return beats;
+}
+
+}  // namespace
+
+void find_beats(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                std::vector<DataFinding>& findings) {
+  for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
+    for (std::size_t period = 2; period <= longest_period; ++period) {
+      const Beats beats = beats_of(data, sensor, period);
+      if (beats.share < 1.0 - may_differ / 2.0 || beats.chance > log_level) continue;
+      const double usual = greatest_of(pilot, [&](const DatasetRows& d) { return beats_of(d, sensor, period).share; });
+      if (usual > model_has_it) continue;
+      findings.push_back({.what = What::beats,
+                          .sensors = {frame.sensors[sensor]},
+                          .n_rows = data.n_rows(),
+                          .every_s = static_cast<double>(period) * frame.window_s,
+                          .chance = std::exp(beats.chance)});
+      break;  // its multiples beat as well
+    }
+  }
+}
+
+// Finds rows that stand in a dataset twice: windows of rows by their hash, then as far as they go on alike.
+
+namespace {
+
+constexpr std::size_t window_rows = 12;     ///< shorter repeats aren't looked at
+constexpr std::size_t fewest_changes = 4;   ///< in such a window
+constexpr std::size_t most_places = 16;     ///< of the same window are compared: steady beats have thousands
+constexpr std::size_t most_parsed = 400;    ///< rows whose information is counted
+constexpr std::size_t aligned_within = 30;  ///< rows by which one run may begin earlier than another (assumed)
+constexpr double least_information = 8.0;   ///< bits; less isn't kept
+constexpr double whole_run = 0.95;          ///< of the shorter run's rows
+
+using Symbol = std::uint64_t;
+
+/// (n_rows) A number for the bits of each row; a row that isn't known all over is like no other.
+std::vector<Symbol> symbols_of(const Series& run, std::size_t n_sensors, Symbol& next_unknown) {
+  std::vector<Symbol> symbols;
+  for (std::size_t row = 0; row < run.n_rows(n_sensors); ++row) {
+    Symbol symbol = 1469598103934665603U;
+    bool known = true;
+    for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+      const std::uint8_t bit = bit_of(run, row, sensor, n_sensors);
+      known = known && bit != unknown_bit;
+      symbol = (symbol ^ bit) * 1099511628211U;
+    }
+    symbols.push_back(known ? symbol : next_unknown++);
+  }
+  return symbols;
+}
+
+/// Phrases that Lempel's and Ziv's parsing of 1977 needs: each is what stood there before, and one symbol.
+double information_of(std::span<const Symbol> symbols) {
+  symbols = symbols.first(std::min(symbols.size(), most_parsed));
+  double n_phrases = 0.0;
+  for (std::size_t at = 0; at < symbols.size();) {
+    std::size_t longest = 0;
+    for (std::size_t from = 0; from < at; ++from) {
+      std::size_t length = 0;
+      while (at + length < symbols.size() && symbols[from + length] == symbols[at + length]) ++length;
+      longest = std::max(longest, length);
+    }
+    at += longest + 1;
+    n_phrases += 1.0;
+  }
+  return n_phrases * std::log2(std::max(n_phrases, 1.0));
+}
+
+/// Of those of a pair of runs and a shift, the first.
+void keep_greatest(std::vector<Repeat>& repeats) {
+  std::ranges::stable_sort(repeats, std::ranges::greater{}, &Repeat::information);
+  std::set<std::tuple<std::size_t, std::size_t, std::size_t>> seen;
+  std::vector<Repeat> kept;
+  for (const Repeat& repeat : repeats) {
+    if (kept.size() == Repeats::most) break;
+    if (seen.insert({repeat.run, repeat.other_run, repeat.row - repeat.other_row}).second) kept.push_back(repeat);
+  }
+  repeats = std::move(kept);
+}
+
+struct Place {
+  std::size_t run = 0, row = 0;
+};
+
+class RepeatFinder {
+ public:
+  explicit RepeatFinder(const DatasetRows& data) : data_(data) {
+    Symbol next_unknown = 1;
+    for (const Series& run : data.runs) symbols_.push_back(symbols_of(run, data.n_sensors, next_unknown));
+  }
+
+  Repeats find() {
+    for (std::size_t run = 0; run < symbols_.size(); ++run) {
+      reached_.clear();
+      for (std::size_t row = 0; row + window_rows <= symbols_[run].size(); ++row) look_at({run, row});
+    }
+    keep_greatest(found_.between_runs);
+    keep_greatest(found_.in_a_run);
+    return std::move(found_);
+  }
+
+ private:
+  void look_at(const Place& here) {
+    const std::span<const Symbol> window = std::span(symbols_[here.run]).subspan(here.row, window_rows);
+    std::size_t n_changes = 0;
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < window_rows; ++i) {
+      n_changes += i > 0 && window[i] != window[i - 1] ? 1 : 0;
+      hash = (hash ^ window[i]) * 0x9E3779B97F4A7C15U;
+      hash ^= hash >> 29U;
+    }
+    if (n_changes < fewest_changes) return;
+    std::vector<Place>& places = places_[hash];
+    for (const Place& there : places) compare(there, here);
+    if (places.size() < most_places) places.push_back(here);
+  }
+
+  /// Runs of one trial repeat their choreography, and what goes by the clock is the same in all runs that begin alike.
+  [[nodiscard]] bool may_repeat(const Place& there, const Place& here, std::size_t n) const {
+    if (there.run == here.run) return there.row + n < here.row;  // or it goes on as its own repeat: a beat
+    if (data_.runs[there.run].trial == data_.runs[here.run].trial) return false;
+    const std::size_t apart = std::max(there.row, here.row) - std::min(there.row, here.row);
+    const std::size_t shorter = std::min(symbols_[there.run].size(), symbols_[here.run].size());
+    return apart > aligned_within || static_cast<double>(n) >= whole_run * static_cast<double>(shorter);
+  }
+
+  void compare(const Place& there, const Place& here) {
+    // What began earlier has been looked at as far as it goes.
+    const auto line =
+        std::pair(there.run, static_cast<std::ptrdiff_t>(here.row) - static_cast<std::ptrdiff_t>(there.row));
+    std::size_t& reached = reached_[line.first * 1000003U + static_cast<std::size_t>(line.second)];
+    if (here.row < reached) return;
+    const std::vector<Symbol>&one = symbols_[there.run], &other = symbols_[here.run];
+    const std::size_t most = std::min(one.size() - there.row, other.size() - here.row);
+    std::size_t n = 0;
+    while (n < most && one[there.row + n] == other[here.row + n]) ++n;
+    reached = here.row + n;
+    if (n < window_rows || !may_repeat(there, here, n)) return;
+    const double information = information_of(std::span(other).subspan(here.row, n));
+    if (information < least_information) return;
+    (there.run == here.run ? found_.in_a_run : found_.between_runs)
+        .push_back({there.run, there.row, here.run, here.row, n, information});
+  }
+
+  const DatasetRows& data_;
+  std::vector<std::vector<Symbol>> symbols_;                      ///< of each run
+  std::unordered_map<std::uint64_t, std::vector<Place>> places_;  ///< of each window's hash, up to here
+  std::unordered_map<std::size_t, std::size_t> reached_;  ///< row of this run, by the other run and how far apart
+  Repeats found_;
+};
+
+}  // namespace
+
+Repeats greatest_repeats(const DatasetRows& data) { return RepeatFinder(data).find(); }
+
+// Rows of all sensors together that no logger hears.
+
+namespace {
+
+using What = DataFinding::What;
+
+constexpr double beyond_model = 1.5;          ///< times as much as any of the model's runs has (assumed)
+constexpr std::size_t shortest_silence = 20;  ///< rows: what is shorter isn't told
+constexpr std::size_t fewest_gaps = 5;        ///< in a run, by which its longest one is judged
+
+// All columns together.
+
+struct Polls {
+  double n = 0.0, n_off = 0.0, chance = 0.0;  ///< changes, those off the grid, logarithm
+  [[nodiscard]] double share() const noexcept { return n > 0.0 ? 1.0 - n_off / n : 1.0; }
+};
+
+/// Changes of any sensor on a grid of so many rows that begins anywhere in a run.
+Polls polls_of(const DatasetRows& data, std::size_t period) {
+  Polls polls;
+  for (const Series& run : data.runs) {
+    std::vector<double> n_at(period, 0.0);
+    double n = 0.0;
+    for (std::size_t i = data.n_sensors; i < run.bits.size(); ++i) {
+      const std::uint8_t bit = run.bits[i], before = run.bits[i - data.n_sensors];
+      if (bit == before || std::max(bit, before) == unknown_bit) continue;
+      n_at[i / data.n_sensors % period] += 1.0;
+      n += 1.0;
+    }
+    const double most = *std::ranges::max_element(n_at), log_period = std::log(static_cast<double>(period));
+    polls.n += n;
+    polls.n_off += n - most;
+    polls.chance += std::min(0.0, log_period - most * log_period);
+  }
+  return polls;
+}
+
+}  // namespace
+
+void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                std::vector<DataFinding>& findings) {
+  for (std::size_t period = longest_period; period >= 2; --period) {
+    const Polls polls = polls_of(data, period);
+    if (polls.n < static_cast<double>(fewest_edges) || polls.n_off > may_differ / 2.0 * polls.n) continue;
+    if (polls.chance > log_level) continue;
+    if (greatest_of(pilot, [&](const DatasetRows& d) { return polls_of(d, period).share(); }) > model_has_it) continue;
+    findings.push_back({.what = What::polled,
+                        .n_rows = data.n_rows(),
+                        .every_s = static_cast<double>(period) * frame.window_s,
+                        .chance = std::exp(polls.chance)});
+    return;  // its divisors do as well
+  }
+}
+
+namespace {
+
+DataFinding::Place place(const StudyFrame& frame, const Series& run, std::size_t row, std::size_t n_rows) {
+  return {frame.trials[run.trial], run.replicate, row + 1, row + n_rows};
+}
+
+}  // namespace
+
+/// Two beats together repeat rows in many places, so that one repeat must be beyond the third of the data as well; in a
+/// single run, it is merely odd.
+void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                 std::vector<DataFinding>& findings) {
+  const Repeats repeats = greatest_repeats(data);
+  for (const auto which : {&Repeats::between_runs, &Repeats::in_a_run}) {
+    const std::vector<Repeat>& own = repeats.*which;
+    if (own.empty()) continue;
+    const Repeat& repeat = own.front();
+    const double n_pairs = 2.0 * std::log(static_cast<double>(data.n_rows()));
+    const double chance = n_pairs - repeat.information * std::log(2.0);
+    if (chance > log_level) continue;
+    const double third = own.size() == Repeats::most ? own.back().information : 0.0;
+    const double usual = greatest_of(pilot, [&](const DatasetRows& d) {
+      const Repeats simulated = greatest_repeats(d);
+      return (simulated.*which).empty() ? 0.0 : (simulated.*which).front().information;
+    });
+    if (repeat.information < beyond_model * std::max(usual, third)) continue;
+    findings.push_back({.what = What::repeated_rows,
+                        .places = {place(frame, data.runs[repeat.run], repeat.row, repeat.n_rows),
+                                   place(frame, data.runs[repeat.other_run], repeat.other_row, repeat.n_rows)},
+                        .n_rows = repeat.n_rows,
+                        .chance = std::exp(chance),
+                        .is_impossible = which == &Repeats::between_runs});
+    return;
+  }
+}
+
+namespace {
+
+/// Rows without any motion between two with some.
+struct Gap {
+  std::size_t run = 0, row = 0, n_rows = 0;
+};
+
+std::vector<Gap> gaps_of(const DatasetRows& data, std::size_t number) {
+  const Series& run = data.runs[number];
+  std::vector<Gap> gaps;
+  std::optional<std::size_t> last;  // row with motion
+  for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
+    const auto bits = std::span(run.bits).subspan(row * data.n_sensors, data.n_sensors);
+    if (std::ranges::find(bits, unknown_bit) != bits.end()) last.reset();
+    if (std::ranges::find(bits, 1) == bits.end()) continue;
+    if (last && row > *last + 1) gaps.push_back({number, *last + 1, row - *last - 1});
+    last = row;
+  }
+  return gaps;
+}
+
+/// Of the run in which it is longest, measured by the mean of the other gaps.
+struct Silence {
+  Gap gap;
+  double times_usual = 0.0;
+  std::size_t n_gaps = 0;  ///< in the dataset
+};
+
+Silence greatest_silence(const DatasetRows& data) {
+  Silence greatest;
+  std::size_t n_gaps = 0;
+  for (std::size_t number = 0; number < data.runs.size(); ++number) {
+    const std::vector<Gap> gaps = gaps_of(data, number);
+    n_gaps += gaps.size();
+    if (gaps.size() <= fewest_gaps) continue;
+    const Gap& longest = *std::ranges::max_element(gaps, {}, &Gap::n_rows);
+    double sum = 0.0;
+    for (const Gap& gap : gaps) sum += static_cast<double>(gap.n_rows);
+    const auto length = static_cast<double>(longest.n_rows);
+    const double times = length / std::max(1.0, (sum - length) / static_cast<double>(gaps.size() - 1));
+    if (times > greatest.times_usual) greatest = {longest, times, 0};
+  }
+  greatest.n_gaps = n_gaps;
+  return greatest;
+}
+
+/// If gaps end by chance, none is so long among so many.
+std::optional<DataFinding> impossible_silence(const StudyFrame& frame, const DatasetRows& data,
+                                              std::span<const DatasetRows> pilot) {
+  const Silence silence = greatest_silence(data);
+  if (silence.n_gaps == 0) return std::nullopt;
+  const double chance = std::log(static_cast<double>(silence.n_gaps)) - silence.times_usual;
+  if (chance > log_level) return std::nullopt;
+  const double usual = greatest_of(pilot, [](const DatasetRows& d) { return greatest_silence(d).times_usual; });
+  if (silence.times_usual < beyond_model * usual) return std::nullopt;
+  const Gap& gap = silence.gap;
+  return DataFinding{.what = What::all_silent,
+                     .places = {place(frame, data.runs[gap.run], gap.row, gap.n_rows)},
+                     .n_rows = gap.n_rows,
+                     .chance = std::exp(chance)};
+}
+
+/// Longer than in any of the model's runs of that trial: where sensors see less than in the model, that is no fault of
+/// the file.
+std::optional<DataFinding> odd_silence(const StudyFrame& frame, const DatasetRows& data,
+                                       std::span<const DatasetRows> pilot) {
+  Gap greatest;
+  double most = 1.0;
+  for (std::size_t number = 0; number < data.runs.size(); ++number) {
+    const std::vector<Gap> gaps = gaps_of(data, number);
+    if (gaps.empty()) continue;
+    const Gap& longest = *std::ranges::max_element(gaps, {}, &Gap::n_rows);
+    const double usual = greatest_of(pilot, [&](const DatasetRows& d) {
+      std::size_t longest_there = 0;
+      for (std::size_t i = 0; i < d.runs.size(); ++i) {
+        if (d.runs[i].trial != data.runs[number].trial) continue;
+        for (const Gap& gap : gaps_of(d, i)) longest_there = std::max(longest_there, gap.n_rows);
+      }
+      return static_cast<double>(longest_there);
+    });
+    if (pilot.empty() || longest.n_rows < shortest_silence) continue;
+    const double times = static_cast<double>(longest.n_rows) / (beyond_model * std::max(1.0, usual));
+    if (times > most) {
+      most = times;
+      greatest = longest;
+    }
+  }
+  if (greatest.n_rows == 0) return std::nullopt;
+  return DataFinding{.what = What::all_silent,
+                     .places = {place(frame, data.runs[greatest.run], greatest.row, greatest.n_rows)},
+                     .n_rows = greatest.n_rows,
+                     .is_impossible = false};
+}
+
+}  // namespace
+
+void find_silence(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                  std::vector<DataFinding>& findings) {
+  std::optional<DataFinding> found = impossible_silence(frame, data, pilot);
+  if (!found) found = odd_silence(frame, data, pilot);
+  if (found) findings.push_back(std::move(*found));
 }
 
 }  // namespace pirsim::reconcile

@@ -1,19 +1,216 @@
 #include "reconcile/data/measured.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 
-#include "io/files/compression.hpp"
-#include "io/files/input.hpp"
-#include "reconcile/data/measured_log.hpp"
+#include "files/disk/compression.hpp"
+#include "files/disk/file.hpp"
+#include "model/schema/check_script.hpp"
+#include "model/schema/clock.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/data/measured_reader.hpp"
-#include "schema/clock.hpp"
 
 namespace pirsim::reconcile {
+namespace {
+
+/// Who notes comings and goings knows them to about a minute: the same as the usual nuisance.
+constexpr double around_change_s = 60.0;      // assumed (30-120)
+constexpr std::size_t fewest_unit_rows = 20;  ///< of a unit; assumed (10-40)
+constexpr std::size_t wanted_units = 12;      ///< of all numbers of people together; assumed (8-20)
+constexpr std::size_t fewest_parts = 2, most_parts = 6;
+constexpr int most_told_apart = 4;  ///< people; more are put together, twice as many each time
+
+constexpr std::size_t most_states = 8;  ///< of counted areas, told apart; assumed (4-16)
+
+std::string people_text(int people, int most) {
+  if (people == 0) return "nobody";
+  if (people == 1) return "1 person";
+  if (most <= most_told_apart) return std::to_string(people) + " people";
+  int least = 1;
+  while (2 * least <= people) least *= 2;
+  return std::to_string(least) + " to " + std::to_string(2 * least - 1) + " people";
+}
+
+/// Those of a reading, area by area: "1 in kitchen, 2 elsewhere".
+template <typename Text>
+std::string areas_text(const CountsSpec& counts, std::size_t reading, const Text& text) {
+  std::string all;
+  int rest = counts.people[reading];
+  const auto add = [&](int people, const std::string& where) {
+    if (people > 0) all += (all.empty() ? "" : ", ") + text(people, where);
+  };
+  for (const AreaCountsSpec& area : counts.areas) {
+    add(area.people[reading], "in " + area.area);
+    rest -= area.people[reading];
+  }
+  add(rest, "elsewhere");
+  return all.empty() ? "nobody" : all;
+}
+
+/// (n_times) What people's whereabouts have in common: the most exact words that are few.
+std::vector<std::string> states_of(const CountsSpec& counts, int most) {
+  const auto texts = [&](const auto& text) {
+    std::vector<std::string> all;
+    for (std::size_t i = 0; i < counts.people.size(); ++i) all.push_back(text(i));
+    return all;
+  };
+  const auto are_few = [](const std::vector<std::string>& all) {
+    return std::set<std::string_view>(all.begin(), all.end()).size() <= most_states;
+  };
+  if (!counts.areas.empty()) {
+    const auto exact = [](int people, const std::string& where) { return std::to_string(people) + ' ' + where; };
+    const auto anybody = [](int, const std::string& where) { return "people " + where; };
+    std::vector<std::string> all = texts([&](std::size_t i) { return areas_text(counts, i, exact); });
+    if (are_few(all)) return all;
+    all = texts([&](std::size_t i) { return areas_text(counts, i, anybody); });
+    if (are_few(all)) return all;
+  }
+  return texts([&](std::size_t i) { return people_text(counts.people[i], most); });
+}
+
+/// People all the time between two moments of the data, and half a minute or so around; or changing.
+class Presence {
+ public:
+  explicit Presence(const OccupancySpec& occupancy) {
+    if (!occupancy.counts) return;
+    const CountsSpec& counts = *occupancy.counts;
+    const int most = counts.people.empty() ? 0 : *std::ranges::max_element(counts.people);
+    const std::vector<std::string> states = states_of(counts, most);
+    const double within_s = occupancy.changes_within_s.value_or(std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < counts.people.size(); ++k) {
+      if (k == 0 || !are_as_many(counts, k)) {
+        if (k > 0) {
+          const double from_s = std::max(counts.times_s[k - 1], counts.times_s[k] - within_s);
+          changes_.push_back({from_s - around_change_s, counts.times_s[k] + around_change_s});
+        }
+        counts_.push_back({counts.times_s[k], {counts.people[k], states[k]}});
+      }
+    }
+  }
+  struct There {
+    std::int32_t people = Units::not_sure;
+    std::string state;
+  };
+  [[nodiscard]] const There& between(double from_s, double to_s) const {
+    if (counts_.empty()) return untold_;
+    const auto next = std::ranges::upper_bound(changes_, from_s, {}, &Change::to_s);
+    if (next != changes_.end() && next->from_s < to_s) return changing_;
+    const auto after = std::ranges::upper_bound(counts_, to_s, {}, &Count::at_s);
+    return after == counts_.begin() ? counts_.front().there : (after - 1)->there;
+  }
+
+ private:
+  struct Change {
+    double from_s, to_s;
+  };
+  struct Count {
+    double at_s;
+    There there;
+  };
+  std::vector<Change> changes_;
+  std::vector<Count> counts_;
+  const There untold_{Units::not_sure, "people as told"}, changing_{Units::not_sure, "comings and goings"};
+};
+
+/// "10:49", with the date if the data have several days; seconds of the run without a clock.
+std::string time_text(const Units& units, std::size_t day, std::size_t row, double window_s) {
+  const double run_s = static_cast<double>(row) * window_s;
+  if (units.begins_s.empty()) return std::to_string(std::llround(run_s)) + " s";
+  constexpr std::size_t date_at = 5, time_at = 11, time_length = 5;
+  const std::string text = RunClock{units.begins_s[day]}.text(run_s);
+  const std::string time = text.substr(time_at, time_length);
+  const bool same_day =
+      units.n_days == 1 &&
+      RunClock{units.begins_s.front()}.begin_day() ==
+          RunClock{units.begins_s.front() + std::llround(static_cast<double>(units.n_rows) * window_s)}.begin_day();
+  return same_day ? time : text.substr(date_at, time_at - 1 - date_at) + " " + time;
+}
+
+/// Rows in the order of time, with what they have in common.
+struct Part {
+  std::string state;
+  std::vector<std::size_t> rows;
+};
+
+/// Splits the rows of each state into parts of equal length, one after the other; in order of their beginnings.
+std::vector<Part> parts_of(const std::map<std::string, std::vector<std::size_t>>& rows_of_state) {
+  const std::size_t n_states = static_cast<std::size_t>(
+      std::ranges::count_if(rows_of_state, [](const auto& state) { return state.second.size() >= fewest_unit_rows; }));
+  const std::size_t parts = std::clamp(wanted_units / std::max<std::size_t>(1, n_states), fewest_parts, most_parts);
+  std::vector<Part> all;
+  for (const auto& [state, rows] : rows_of_state) {
+    if (rows.size() < fewest_unit_rows) continue;
+    const std::size_t n = std::clamp(rows.size() / fewest_unit_rows, std::size_t{1}, parts);
+    for (std::size_t part = 0; part < n; ++part) {
+      const auto at = [&](std::size_t i) { return rows.begin() + static_cast<std::ptrdiff_t>(i * rows.size() / n); };
+      all.push_back({state, {at(part), at(part + 1)}});
+    }
+  }
+  std::ranges::stable_sort(all, {}, [](const Part& part) { return part.rows.front(); });
+  return all;
+}
+
+std::string name_of(const Units& units, const Part& part, double window_s) {
+  const std::size_t first = part.rows.front(), last = part.rows.back();
+  return part.state + " from " + time_text(units, first / units.n_rows, first % units.n_rows, window_s) + " to " +
+         time_text(units, last / units.n_rows, last % units.n_rows + 1, window_s);
+}
+
+}  // namespace
+
+Units units_of(const ScriptSpec& script) {
+  Units units;
+  const double window_s = static_cast<double>(script.sensing.ticks_per_window) / script.sensing.tick_rate_hz;
+  if (script.trials.size() != 1 || !script.trials.front().occupancy) return units;
+  const TrialSpec& trial = script.trials.front();
+  const OccupancyRuns runs = runs_of(*trial.occupancy, script.begin);
+  const double duration_s = trial.duration_s.value_or(runs.duration_s);
+  units.n_rows = static_cast<std::size_t>(std::max(0.0, std::floor(duration_s / window_s + 1e-6)));
+  if (units.n_rows == 0 || runs.begins_s.empty()) return units;
+  units.trial = trial.id;
+  units.n_days = runs.begins_s.size();
+  units.of_row.assign(units.n_days * units.n_rows, Units::none);
+  units.people.assign(units.of_row.size(), Units::not_sure);
+  for (const double begin_s : runs.begins_s) {
+    if (runs.clock) units.begins_s.push_back(runs.clock->begin_s + std::llround(begin_s - runs.begins_s.front()));
+  }
+  const Presence presence(*trial.occupancy);
+  std::map<std::string, std::vector<std::size_t>> rows_of_state;
+  for (std::size_t i = 0; i < units.of_row.size(); ++i) {
+    const double from_s = runs.begins_s[i / units.n_rows] + static_cast<double>(i % units.n_rows) * window_s;
+    const Presence::There& there = presence.between(from_s, from_s + window_s);
+    units.people[i] = there.people;
+    rows_of_state[there.state].push_back(i);
+  }
+  for (const Part& part : parts_of(rows_of_state)) {
+    for (const std::size_t row : part.rows) units.of_row[row] = static_cast<std::uint16_t>(units.names.size());
+    units.names.push_back(name_of(units, part, window_s));
+  }
+  if (units.names.empty())
+    throw Error(ErrorCode::input, trial.occupancy->where,
+                "too short to be compared: fewer than " + std::to_string(fewest_unit_rows) +
+                    " windows have the same number of people in them");
+  return units;
+}
+
+void require_known_presence(const ScriptSpec& script) {
+  const auto drawn =
+      std::ranges::find_if(script.trials, [](const TrialSpec& trial) { return trial.schedule.has_value(); });
+  if (drawn == script.trials.end()) return;
+  throw Error(
+      ErrorCode::input, drawn->schedule->where,
+      "a schedule draws who is there, and other people would be taken for a fault of a sensor: write the counts "
+      "of the measured days instead, occupancy: {counts: FILE} (their column 'people' will do); without counts "
+      "nothing of such days can be compared. `pirsim log` tells what they tell by themselves");
+}
 
 StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script) {
   StudyFrame frame;

@@ -4,12 +4,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
+#include "files/disk/file.hpp"
+#include "model/core/random.hpp"
 #include "reconcile/data/statistics.hpp"
-#include "reconcile/ensemble/simulated_realization.hpp"
+#include "reconcile/ensemble/realization.hpp"
 #include "stats/matrix.hpp"
 
 namespace pirsim::reconcile {
@@ -56,5 +63,146 @@ class ReferenceTable {
 /// settings, catalogue, build.
 [[nodiscard]] std::string table_key(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
                                     const TableSettings& settings);
+
+}  // namespace pirsim::reconcile
+
+// Numbers to a stream of bytes and back, little-endian, with a digest: how fitted objects are kept.
+
+namespace pirsim::stats {
+
+template <typename T>
+concept Number = std::is_arithmetic_v<T>;
+
+/// Starts with `kind` and a version, ends with the SHA-256 of all bytes between; call finish() last.
+class BinaryWriter {
+ public:
+  BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version);
+  template <Number T>
+  void write(T value) {
+    put(&value, sizeof value);
+  }
+  template <Number T>
+  void write(const std::vector<T>& values) {
+    write(static_cast<std::uint64_t>(values.size()));
+    put(values.data(), values.size() * sizeof(T));
+  }
+  template <Number T>
+  void write(const Matrix<T>& matrix) {
+    write(static_cast<std::uint64_t>(matrix.rows()));
+    write(static_cast<std::uint64_t>(matrix.columns()));
+    put(matrix.values().data(), matrix.values().size() * sizeof(T));
+  }
+  void write(std::string_view text);
+  /// Writes the digest. Throws Error(io) if the stream has failed.
+  void finish();
+
+ private:
+  void put(const void* bytes, std::size_t count);
+  std::ostream& out_;
+  Sha256 digest_;
+};
+
+/// Reads what BinaryWriter wrote, in the same order. Every fault is Error(input) that names the kind.
+class BinaryReader {
+ public:
+  /// Throws Error(input) if the stream holds something else or another version.
+  BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version);
+  template <Number T>
+  [[nodiscard]] T read() {
+    T value{};
+    get(&value, sizeof value);
+    return value;
+  }
+  template <Number T>
+  [[nodiscard]] std::vector<T> read_vector() {
+    std::vector<T> values;
+    get_many(values, read<std::uint64_t>());
+    return values;
+  }
+  template <Number T>
+  [[nodiscard]] Matrix<T> read_matrix() {
+    const auto rows = read<std::uint64_t>(), columns = read<std::uint64_t>();
+    if (columns != 0 && rows > largest_count / columns) fail("is damaged: an impossible size");
+    std::vector<T> values;
+    get_many(values, rows * columns);
+    Matrix<T> matrix(rows, columns);
+    std::copy(values.begin(), values.end(), matrix.values().begin());
+    return matrix;
+  }
+  [[nodiscard]] std::string read_text();
+  /// Compares the digest; throws Error(input) if it differs.
+  void finish();
+
+ private:
+  static constexpr std::uint64_t largest_count = 1ULL << 36U;
+  template <typename T>
+  void get_many(std::vector<T>& values, std::uint64_t count) {
+    if (count > largest_count) fail("is damaged: an impossible size");
+    constexpr std::uint64_t piece = 1ULL << 20U;  // a wrong count is noticed before memory runs out
+    while (values.size() < count) {
+      const std::uint64_t from = values.size(), more = std::min(piece, count - from);
+      values.resize(from + more);
+      get(values.data() + from, more * sizeof(T));
+    }
+  }
+  void get(void* bytes, std::size_t count);
+  [[noreturn]] void fail(const std::string& what) const;
+  std::istream& in_;
+  std::string kind_;
+  Sha256 digest_;
+};
+
+}  // namespace pirsim::stats
+
+// Simulated datasets on disk: a folder with chunks of finished realizations, each of which names its key and number,
+// and a journal of them. Private to reconcile.
+
+namespace pirsim::reconcile {
+
+/// The runs of one dataset as they were simulated: statistics are taken when they are needed, so that data with other
+/// gaps, and other statistics, need no new simulation.
+struct SimulatedDataset {
+  TableRow row;
+  std::vector<Series> runs;
+};
+/// Datasets of some realizations that follow each other.
+struct TableChunk {
+  std::vector<SimulatedDataset> datasets;
+  std::uint32_t n_left_out = 0;
+};
+
+class TableStore {
+ public:
+  /// `key`: what the datasets depend on. An empty folder name keeps nothing. Throws Error(input) if the folder holds a
+  /// table with another key.
+  TableStore(std::filesystem::path folder, const std::string& key);
+  /// None if the chunk isn't there. Throws Error(input) if it is damaged, of another table or of other realizations.
+  [[nodiscard]] std::optional<TableChunk> find(std::uint32_t number) const;
+  /// Before work that is to be kept; afterwards what another process kept meanwhile is found too. Throws Error(io) if
+  /// the folder can't be written or another process is at work on it, which two may read.
+  void claim();
+  void keep(std::uint32_t number, const TableChunk& chunk);
+
+ private:
+  [[nodiscard]] std::filesystem::path file(std::uint32_t number) const;
+  [[nodiscard]] std::filesystem::path journal_path() const;
+  void take(const std::optional<io::Journal::Content>& journal);
+
+  std::filesystem::path folder_;
+  std::string key_;
+  std::set<std::string> there_;         ///< names of chunks
+  std::optional<io::Journal> journal_;  ///< once it is claimed
+};
+
+/// Simulates item `index` (a realization) with all of its datasets.
+using ItemJob = std::function<TableChunk(std::uint32_t index)>;
+/// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
+/// on several threads, and kept there; the context is told how many are done.
+void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+                    const std::function<void(TableChunk&)>& use);
+
+/// A row a dataset.
+void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
+                       unsigned threads, stats::Matrix<float>& statistics);
 
 }  // namespace pirsim::reconcile

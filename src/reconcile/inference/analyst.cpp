@@ -1,12 +1,111 @@
 #include "reconcile/inference/analyst.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
-#include "effects/catalogue.hpp"
+#include "engine/effects/catalogue.hpp"
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
+namespace {
+
+constexpr std::size_t plain_model = 0;
+
+std::vector<std::size_t> survivors(std::span<const HypothesisScore> scores, const DecisionLevels& levels) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const bool is_certain = i != plain_model && scores[i].probability >= levels.certain;
+    const double level =
+        is_certain ? std::min(levels.alpha, std::max(0.4 * levels.alpha, scores[i].least_p)) : levels.alpha;
+    if (scores[i].p > level) kept.push_back(i);
+  }
+  std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) { return scores[a].p > scores[b].p; });
+  return kept;
+}
+
+/// Puts the hypothesis that is to be named first; false if none is.
+bool find_name(std::span<const HypothesisScore> scores, std::vector<std::size_t>& kept, double sure) {
+  const auto likeliest = std::ranges::max_element(kept, {}, [&](std::size_t i) { return scores[i].probability; });
+  if (kept.size() > 1 && scores[*likeliest].probability < sure) return false;
+  std::rotate(kept.begin(), likeliest, likeliest + 1);
+  return true;
+}
+
+/// Whether wrong counts of people can have made the data, while something else is to be named: who was there comes
+/// first, since a sensor is easily blamed for somebody who came unnoticed.
+bool may_be_miscounted(std::span<const HypothesisScore> scores, const std::vector<std::size_t>& kept) {
+  const bool counts = std::ranges::any_of(kept, [&](std::size_t i) { return is_about_counts(scores[i].hypothesis); });
+  return counts && effects::find(scores[kept.front()].hypothesis).info.family != effects::Family::data;
+}
+
+}  // namespace
+
+bool is_about_counts(const std::string& hypothesis) {
+  const auto& all = effects::catalogue();
+  const auto effect = std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == hypothesis; });
+  return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
+}
+
+Decision decide(double null_p, std::span<const HypothesisScore> scores, const DecisionLevels& levels) {
+  if (null_p > levels.alpha) return {};
+  std::vector<std::size_t> kept = survivors(scores, levels);
+  if (std::ranges::find(kept, plain_model) != kept.end()) return {Verdict::one_of, std::move(kept)};
+  double together = 0.0;
+  for (const std::size_t i : kept) together += scores[i].probability;
+  if (kept.empty() || together < levels.plausible) return {Verdict::none_in_catalogue, {}};
+  if (!find_name(scores, kept, levels.sure)) return {Verdict::one_of, std::move(kept)};
+  if (scores[kept.front()].p_own <= levels.entitled * levels.alpha)
+    return {Verdict::none_in_catalogue, {}, kept.front()};
+  if (may_be_miscounted(scores, kept)) return {Verdict::one_of, std::move(kept)};
+  return {Verdict::named, std::move(kept)};
+}
+
+const Look* better_relative(std::span<const Look> relatives, const Look& named) {
+  constexpr double much_better = 2.0;
+  const auto best = std::ranges::max_element(relatives, {}, &Look::p);
+  return best != relatives.end() && best->passes() && best->p >= much_better * named.p ? &*best : nullptr;
+}
+
+bool comes_nearest(const HypothesisScore& dropped, const Look& applied) {
+  return applied.passes() && dropped.probability >= DecisionLevels().sure;
+}
+
+bool counts_in_doubt(std::span<const Candidate> candidates, double alpha) {
+  return std::ranges::any_of(
+      candidates, [&](const Candidate& c) { return c.score.p > alpha && is_about_counts(c.score.hypothesis); });
+}
+
+Reason reason_of(const HypothesisScore& score, bool kept, double alpha) {
+  if (kept && score.p <= alpha) return reason::Sure{score.p, score.probability};
+  if (kept) return reason::NotRuledOut{score.p};
+  if (score.p > alpha) return reason::Improbable{score.p};
+  if (score.p == 0.0) return reason::HardlySimulated{};
+  reason::RuledOut by;
+  by.least_p = 0.5 * score.least_p;
+  if (2.0 * score.p_relative <= alpha) by.p_relative = score.p_relative;
+  if (2.0 * score.p_absolute <= alpha) by.p_absolute = score.p_absolute;
+  return by;
+}
+
+FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
+  std::map<effects::Family, double> sums;
+  for (const HypothesisScore& score : scores.subspan(1))
+    sums[effects::find(score.hypothesis).info.family] += score.probability;
+  const auto likeliest = std::ranges::max_element(sums, {}, [](const auto& sum) { return sum.second; });
+  return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
+}
+
+std::size_t likeliest_hypothesis(std::span<const double> probabilities,
+                                 const std::function<bool(std::size_t)>& wanted) {
+  std::size_t best = 0;
+  for (std::size_t hypothesis = 1; hypothesis < probabilities.size(); ++hypothesis) {
+    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
+    if (wanted(hypothesis) && probabilities[hypothesis] > most) best = hypothesis;
+  }
+  return best;
+}
+
 Analyst::Analyst(std::shared_ptr<const TableView> view, const ClassifierSettings& settings, const Context& context)
     : view_(std::move(view)),
       settings_(settings),

@@ -1,12 +1,14 @@
 #include "reconcile/inference/feature_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "core/parallel.hpp"
-#include "schema/action_facts.hpp"
+#include "model/core/parallel.hpp"
+#include "model/schema/actions.hpp"
+#include "reconcile/data/statistics.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -172,6 +174,315 @@ stats::Matrix<float> FeatureMap::features(const stats::Matrix<float>& statistics
                         },
                         [](int&) {});
   return all;
+}
+
+// The features of a dataset, block by block.
+
+namespace {
+
+using FeatureKind = FeatureName::Kind;
+
+FeatureName of_statistic(FeatureKind kind, const std::string& statistic) {
+  return {.kind = kind, .statistic = statistic};
+}
+FeatureName gained_by(FeatureName::Permutation permutation) {
+  return {.kind = FeatureKind::likeness_gained, .permutation = permutation};
+}
+
+constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - told_of_cells.size();
+constexpr std::size_t n_slices = n_trial_statistics - told_of_trials.size();
+/// Statistics whose means over the sensors of a trial are looked at one by one.
+constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
+                                   CellStatistic::onsets,        CellStatistic::isolated,
+                                   CellStatistic::again_after_1, CellStatistic::agreement,
+                                   CellStatistic::lead_seconds,  CellStatistic::tail_seconds};
+/// Statistics by whose means the sensors are put in order.
+constexpr std::array told_in_order{CellStatistic::seconds,      CellStatistic::silent_seconds,
+                                   CellStatistic::onsets,       CellStatistic::again_after_1,
+                                   CellStatistic::period_power, CellStatistic::half_difference};
+
+template <typename Statistic>
+Statistic nth_after(Statistic first, std::size_t n) {
+  return static_cast<Statistic>(static_cast<std::size_t>(first) + n);
+}
+
+}  // namespace
+
+void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
+  for (const std::size_t trial : trials_) {
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      if (!known(trial, sensor, CellStatistic::seconds)) continue;
+      out.test_next();
+      out.add(data.cell(trial, sensor, CellStatistic::seconds), [&] {
+        return FeatureName{FeatureKind::cell, frame_.trials[trial], frame_.sensors[sensor],
+                           name(CellStatistic::seconds)};
+      });
+    }
+  }
+}
+
+void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
+  for (const CellStatistic statistic : told_of_cells) {
+    std::vector<double> means;
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      double sum = 0.0, count = 0.0;
+      for (const std::size_t trial : trials_) {
+        if (!known(trial, sensor, statistic)) continue;
+        sum += data.cell(trial, sensor, statistic);
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      means.push_back(sum / count);
+      out.test_next();
+      out.add(means.back(), [&] {
+        return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(statistic)};
+      });
+    }
+    if (std::ranges::find(told_in_order, statistic) == told_in_order.end() || means.size() < 3) continue;
+    std::ranges::sort(means);
+    out.add(means[means.size() - 1] - means[means.size() - 2],
+            [&] { return of_statistic(FeatureKind::first_less_second, name(statistic)); });
+    out.add(means[1] - means[0], [&] { return of_statistic(FeatureKind::last_but_one_less_last, name(statistic)); });
+    out.add(means.back() - means.front(), [&] { return of_statistic(FeatureKind::first_less_last, name(statistic)); });
+  }
+}
+
+void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
+  for (const CellStatistic statistic : told_by_trial) {
+    for (const std::size_t trial : trials_) {
+      double sum = 0.0, count = 0.0;
+      for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+        if (!known(trial, sensor, statistic)) continue;
+        sum += data.cell(trial, sensor, statistic);
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      out.add(sum / count, [&] {
+        return FeatureName{.kind = FeatureKind::trial, .trial = frame_.trials[trial], .statistic = name(statistic)};
+      });
+    }
+  }
+  for (const TrialStatistic statistic : told_of_trials) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (const std::size_t trial : trials_) {
+      if (known_.trial(trial, statistic) == 0) continue;
+      const double value = data.trial(trial, statistic);
+      sum += value;
+      squares += value * value;
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
+    out.add(std::sqrt(squares / count), [&] { return of_statistic(FeatureKind::size, name(statistic)); });
+  }
+  write_shifts(data, out);
+}
+
+/// What a clock's error is read off, of either sign: over the trials, of each sensor and of all.
+void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
+  const std::string statistic = name(CellStatistic::shift_s);
+  double all = 0.0, n_all = 0.0;
+  for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+    double sum = 0.0, count = 0.0;
+    for (const std::size_t trial : trials_) {
+      if (!known(trial, sensor, CellStatistic::shift_s)) continue;
+      sum += data.cell(trial, sensor, CellStatistic::shift_s);
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    out.add(sum / count, [&] {
+      return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = statistic};
+    });
+    all += sum;
+    n_all += count;
+  }
+  if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(FeatureKind::mean, statistic); });
+}
+
+/// Sum of a statistic, of(data, trial), over the trials in which it is known; none if there are no such trials. What a
+/// dataset has depends on the shape alone: a trial that one dataset lacks adds nothing.
+template <typename Of>
+std::optional<double> FeatureMap::total(const DatasetStatistics& data, const Of& of) const {
+  std::optional<double> sum;
+  for (const std::size_t trial : trials_) {
+    if (of(known_, trial) == 0) continue;
+    const float value = of(data, trial);
+    sum = sum.value_or(0.0) + (std::isnan(value) ? 0.0 : static_cast<double>(value));
+  }
+  return sum;
+}
+
+/// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
+void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
+  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& sensor) {
+    std::vector<double> totals;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::optional<double> seconds = part(k);
+      if (!seconds) return;
+      totals.push_back(*seconds);
+    }
+    const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      out.test_next();
+      out.add(std::log((totals[k] + 1.0) / all), [&] {
+        return FeatureName{.kind = FeatureKind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n};
+      });
+    }
+  };
+  write_shares(
+      n_slices,
+      [&](std::size_t k) {
+        return total(data, [&](const auto& all, std::size_t trial) {
+          return all.trial(trial, nth_after(TrialStatistic::slice_1, k));
+        });
+      },
+      "");
+  for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+    write_shares(
+        n_sixths,
+        [&](std::size_t k) {
+          return total(data, [&](const auto& all, std::size_t trial) {
+            return all.cell(trial, sensor, nth_after(CellStatistic::sixth_1, k));
+          });
+        },
+        frame_.sensors[sensor]);
+  }
+}
+
+/// How much oftener than not a sensor moves while another does: logarithms of odds over all trials.
+void FeatureMap::write_pairs(const DatasetStatistics& data, Writer& out) const {
+  std::vector<double> odds;
+  for (std::size_t first = 0; first < frame_.sensors.size(); ++first) {
+    for (std::size_t second = 0; second < frame_.sensors.size(); ++second) {
+      if (first == second) continue;
+      const auto alone = total(data, [&](const auto& all, std::size_t t) { return all.pair(t, first, second); });
+      const auto seconds =
+          total(data, [&](const auto& all, std::size_t t) { return all.cell(t, second, CellStatistic::seconds); });
+      if (!alone || !seconds) continue;
+      const double together = std::max(0.0, *seconds / frame_.window_s - *alone);
+      odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
+      out.test_next();
+      out.add(odds.back(), [&] {
+        return FeatureName{
+            .kind = FeatureKind::together, .sensor = frame_.sensors[first], .other = frame_.sensors[second]};
+      });
+    }
+  }
+  if (odds.empty()) return;
+  out.add(*std::ranges::max_element(odds), [] { return FeatureName{FeatureKind::most_together}; });
+  out.add(*std::ranges::min_element(odds), [] { return FeatureName{FeatureKind::least_together}; });
+}
+
+void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
+  for (const CellStatistic statistic : told_of_cells) {
+    double count = 0.0, sum = 0.0, size = 0.0, greatest = -1e9, least = 1e9;
+    std::vector<double> slopes(covariates_.size(), 0.0);
+    for (const std::size_t trial : trials_) {
+      for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+        if (!known(trial, sensor, statistic)) continue;
+        const double value = data.cell(trial, sensor, statistic);
+        count += 1.0;
+        sum += value;
+        size += std::abs(value);
+        greatest = std::max(greatest, value);
+        least = std::min(least, value);
+        for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += value * covariates_[c][frame_.cell(trial, sensor)];
+      }
+    }
+    if (count == 0.0) continue;
+    out.test_next();
+    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
+    out.test_next();
+    out.add(size / count, [&] { return of_statistic(FeatureKind::size, name(statistic)); });
+    out.add(greatest, [&] { return of_statistic(FeatureKind::greatest, name(statistic)); });
+    out.add(least, [&] { return of_statistic(FeatureKind::least, name(statistic)); });
+    for (std::size_t c = 0; c < slopes.size(); ++c) {
+      out.add(slopes[c] / count, [&] {
+        return FeatureName{.kind = FeatureKind::slope, .statistic = name(statistic), .other = covariate_names_[c]};
+      });
+    }
+  }
+}
+
+double FeatureMap::likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
+                            std::span<const std::size_t> sensor_order) const {
+  Correlation correlation;
+  for (const std::size_t trial : trials_) {
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      const std::size_t from_trial = trial_order[trial], from_sensor = sensor_order[sensor];
+      if (!known(trial, sensor, CellStatistic::seconds) || !known(from_trial, from_sensor, CellStatistic::seconds))
+        continue;
+      correlation.add(values[frame_.cell(trial, sensor)], expected_log_[frame_.cell(from_trial, from_sensor)]);
+    }
+  }
+  return correlation.value();
+}
+
+void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) const {
+  const std::size_t n_trials = frame_.trials.size(), n_sensors = frame_.sensors.size();
+  std::vector<double> values(frame_.n_cells(), 0.0);
+  for (std::size_t trial = 0; trial < n_trials; ++trial) {
+    for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+      const double seconds = seconds_of(data, trial, sensor);
+      if (!std::isnan(seconds)) values[frame_.cell(trial, sensor)] = std::log1p(seconds);
+    }
+  }
+  std::vector<std::size_t> trials(n_trials), sensors(n_sensors);
+  std::iota(trials.begin(), trials.end(), std::size_t{0});
+  std::iota(sensors.begin(), sensors.end(), std::size_t{0});
+  const double as_it_is = likeness(values, trials, sensors);
+  out.add(as_it_is, [] { return FeatureName{FeatureKind::likeness}; });
+  const auto add = [&](const auto& trial_order, const auto& sensor_order, FeatureName::Permutation permutation) {
+    out.add(likeness(values, trial_order, sensor_order) - as_it_is, [&] { return gained_by(permutation); });
+  };
+  const auto rotated = [](std::vector<std::size_t> order, std::ptrdiff_t by) {
+    std::rotate(order.begin(), order.begin() + (by > 0 ? by : static_cast<std::ptrdiff_t>(order.size()) + by),
+                order.end());
+    return order;
+  };
+  const auto best_swap = [&](std::vector<std::size_t> order, const auto& likeness_of) {
+    double best = -2.0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        std::swap(order[i], order[j]);
+        best = std::max(best, likeness_of(order));
+        std::swap(order[i], order[j]);
+      }
+    }
+    return best - as_it_is;
+  };
+  if (n_trials > 1) {
+    add(rotated(trials, 1), sensors, FeatureName::Permutation::trials_shifted);
+    add(rotated(trials, -1), sensors, FeatureName::Permutation::trials_shifted_back);
+    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, FeatureName::Permutation::trials_reversed);
+    out.add(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
+            [] { return gained_by(FeatureName::Permutation::two_trials_swapped); });
+  }
+  if (n_sensors > 1) {
+    add(trials, rotated(sensors, 1), FeatureName::Permutation::sensors_shifted);
+    add(trials, rotated(sensors, -1), FeatureName::Permutation::sensors_shifted_back);
+    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), FeatureName::Permutation::sensors_reversed);
+    out.add(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
+            [] { return gained_by(FeatureName::Permutation::two_sensors_swapped); });
+  }
+}
+
+void FeatureMap::write_all(const DatasetStatistics& statistics, Writer& out) const {
+  const Scaled data = scaled(statistics);
+  write_cells(data, out);
+  out.end_block();
+  write_sensors(data, out);
+  out.end_block();
+  write_trials(data, out);
+  out.end_block();
+  write_time(statistics, out);
+  out.end_block();
+  write_pairs(statistics, out);
+  out.end_block();
+  write_contrasts(data, out);
+  out.end_block();
+  write_permutations(statistics, out);
+  out.end_block();
 }
 
 }  // namespace pirsim::reconcile

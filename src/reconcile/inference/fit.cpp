@@ -2,14 +2,267 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "reconcile/inference/kinds.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
+
+using effects::ParameterInfo;
+using effects::Scale;
+
+double to_flat(const ParameterInfo& info, double value) {
+  const double within = std::clamp(value, info.low, info.high);
+  return info.scale == Scale::logarithmic ? std::log(within) : within;
+}
+
+double from_flat(const ParameterInfo& info, double value) {
+  const double natural = info.scale == Scale::logarithmic ? std::exp(value) : value;
+  const double rounded = info.scale == Scale::whole ? std::round(natural) : natural;
+  return std::clamp(rounded, info.least, info.most);
+}
+
+namespace {
+
+constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no difference
+constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the hypotheses best
+
+/// What isn't a matter of more or less: choices, and for each strength on which side of `off` it lies.
+using ChoicesAndSides = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
+
+ChoicesAndSides kind_of(const EffectSpec& effect) {
+  ChoicesAndSides kind{effect.choices, {}};
+  for (const effects::ParameterInfo& info : effects::find(effect.name).info.parameters) {
+    if (info.role != effects::Role::strength || !effects::applies(info, effect)) continue;
+    const double value = effect.parameters.at(info.name);
+    kind.second.push_back(value > info.off ? 1 : value < info.off ? -1 : 0);
+  }
+  return kind;
+}
+
+double strength_of(const EffectSpec& effect) {
+  const effects::ParameterInfo& strength = effects::strength_parameter(effect);
+  return to_flat(strength, effect.parameters.at(strength.name));
+}
+
+}  // namespace
+
+std::vector<int> number_alike(const ReferenceTable& table, std::span<const std::size_t> rows, std::size_t fewest) {
+  if (rows.empty() || table.rows[rows.front()].hypothesis == 0) return std::vector<int>(rows.size(), 0);
+  std::map<ChoicesAndSides, std::vector<std::pair<double, std::size_t>>> by_kind;  // strength and place of each
+  for (std::size_t place = 0; place < rows.size(); ++place) {
+    const EffectSpec& drawn = table.rows[rows[place]].effects.front();
+    by_kind[kind_of(drawn)].emplace_back(strength_of(drawn), place);
+  }
+  std::vector<int> numbers(rows.size(), 0);
+  const bool any_small = std::ranges::any_of(by_kind, [&](const auto& k) { return k.second.size() < fewest; });
+  int next = any_small ? 1 : 0;  // 0: all those of kinds with few datasets
+  for (auto& [kind, members] : by_kind) {
+    if (members.size() < fewest) continue;
+    std::ranges::sort(members);
+    const bool varies = members.front().first < members.back().first;
+    const std::size_t parts = varies ? std::clamp<std::size_t>(members.size() / fewest_in_part, 1, most_parts) : 1;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      numbers[members[i].second] = next + static_cast<int>(i * parts / members.size());
+    next += static_cast<int>(parts);
+  }
+  return numbers;
+}
+
+KindFinder::KindFinder(const ReferenceTable& table, std::span<const std::size_t> rows,
+                       const stats::Matrix<float>& features) {
+  const std::vector<int> numbers = number_alike(table, rows, 1);
+  const int n_kinds = numbers.empty() ? 0 : std::ranges::max(numbers) + 1;
+  for (int kind = 0; kind < n_kinds; ++kind) {
+    examples_.push_back(static_cast<std::size_t>(std::ranges::find(numbers, kind) - numbers.begin()));
+    n_.push_back(static_cast<double>(std::ranges::count(numbers, kind)));
+  }
+  if (n_kinds > 1) discriminant_ = stats::Discriminant::fit(features, numbers, n_kinds);
+}
+
+std::size_t KindFinder::one_like(std::span<const float> features) const {
+  if (examples_.size() < 2) return examples_.at(0);
+  const std::vector<double> densities = discriminant_.log_densities(features);
+  return examples_[static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin())];
+}
+
+std::vector<KindFinder::Share> KindFinder::shares(std::span<const float> features) const {
+  if (examples_.size() < 2) return {{examples_.at(0), 1.0}};
+  std::vector<double> logs = discriminant_.log_densities(features);
+  for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += std::log(n_[i]);
+  const double highest = std::ranges::max(logs);
+  double sum = 0.0;
+  std::vector<Share> shares;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    shares.push_back({examples_[i], std::exp(logs[i] - highest)});
+    sum += shares.back().probability;
+  }
+  for (Share& share : shares) share.probability /= sum;
+  return shares;
+}
+
+namespace {
+
+constexpr std::size_t fewest_training = 20;  ///< datasets of a hypothesis: fewer have no shape
+constexpr std::size_t fewest_calibration = 10;
+constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
+
+/// Its parameters are fitted from these, each once more without one of them (stats::abc_posterior).
+std::size_t fewest_to_fit(const ReferenceTable& table, std::size_t hypothesis) {
+  if (hypothesis == 0) return 0;
+  return 2 * effects::find(table.hypothesis_name(hypothesis)).info.parameters.size() + 3;
+}
+
+/// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
+/// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
+std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
+  std::vector<std::pair<double, std::size_t>> by_p;
+  for (const std::size_t row : rows) by_p.emplace_back(view.p_of_row(row), row);
+  std::ranges::sort(by_p);
+  const auto fewest = static_cast<std::size_t>(3.0 / alpha);
+  const auto n_seen =
+      static_cast<std::size_t>(std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= alpha; }));
+  by_p.resize(std::min(by_p.size(), std::max(n_seen, fewest)));
+  rows.clear();
+  for (const auto& [p, row] : by_p) rows.push_back(row);
+  std::ranges::sort(rows);
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
+                                    const std::string& left_out) {
+  std::erase_if(rows, [&](std::size_t row) {
+    return std::ranges::find(table.rows[row].effects, left_out, &EffectSpec::name) != table.rows[row].effects.end();
+  });
+  return rows;
+}
+
+SeenRows seen_rows(const TableView& view, double alpha, const std::string& left_out) {
+  const ReferenceTable& table = view.table();
+  SeenRows seen{rows_of(table, 0, Part::calibration)};
+  for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
+    seen.push_back(rows_seen(view, still_made(table, rows_of(table, hypothesis, Part::calibration), left_out), alpha));
+  return seen;
+}
+
+LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, const std::string& left_out)
+    : n_hypotheses(table.n_hypotheses()) {
+  const auto add = [&](const std::vector<std::size_t>& more, const std::vector<int>& kinds_of_more,
+                       std::vector<std::size_t>& part) {
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      part.push_back(rows.size());
+      rows.push_back(more[i]);
+      labels.push_back(static_cast<int>(hypotheses.size()));
+      kinds.push_back(kinds_of_more[i]);
+    }
+  };
+  int n_kinds = 0;
+  for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
+    if (table.hypothesis_name(hypothesis) == left_out) continue;
+    const std::vector<std::size_t> training = still_made(table, rows_of(table, hypothesis, Part::training), left_out);
+    const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
+    if (training.size() < fewest_training ||
+        n_calibration < std::max(fewest_calibration, fewest_to_fit(table, hypothesis))) {
+      if (hypothesis > 0) continue;
+      throw Error(ErrorCode::infeasible,
+                  "reconcile: people could get about in too few realizations of the plain model (" +
+                      std::to_string(training.size() + n_calibration) + "): simulate more realizations");
+    }
+    std::vector<int> alike = number_alike(table, training, fewest_of_kind);
+    for (int& kind : alike) kind += n_kinds;
+    n_kinds = std::ranges::max(alike) + 1;
+    add(training, alike, split.fitting);
+    add(seen.at(hypothesis), std::vector<int>(seen.at(hypothesis).size(), -1), split.calibration);
+    hypotheses.push_back(hypothesis);
+  }
+  if (hypotheses.size() < 2)
+    throw Error(ErrorCode::infeasible,
+                "reconcile: no effect to look for is left; of each too few realizations could be "
+                "simulated in this room");
+}
+
+std::vector<double> LabelledRows::by_hypothesis(std::span<const double> of_classes) const {
+  std::vector<double> values(n_hypotheses, 0.0);
+  for (std::size_t c = 0; c < hypotheses.size(); ++c) values[hypotheses[c]] = of_classes[c];
+  return values;
+}
+
+HypothesisProbabilities::HypothesisProbabilities(const ReferenceTable& table, const FeatureMap& map,
+                                                 const SeenRows& seen, const stats::PooledClassifierSettings& settings)
+    : map_(&map),
+      data_(table, seen, {}),
+      classifier_(stats::PooledClassifier::fit(map.features(table.statistics.select_rows(data_.rows), settings.threads),
+                                               data_.labels, static_cast<int>(data_.hypotheses.size()), data_.split,
+                                               settings, data_.kinds)) {}
+
+std::vector<double> HypothesisProbabilities::of(std::span<const float> statistics) const {
+  return data_.by_hypothesis(classifier_.probabilities(map_->features(statistics)));
+}
+
+HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
+                                           const Context& context)
+    : map_(&view.map()),
+      seen_rows_(reconcile::seen_rows(view, settings.alpha, settings.left_out)),
+      data_(view.table(), seen_rows_, settings.left_out) {
+  for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
+    names_.push_back(view.table().hypothesis_name(hypothesis));
+  stats::ConformalSettings conformal;
+  conformal.pooled.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads};
+  conformal.pooled.threads = context.threads;
+  conformal.shapes.seed = context.seed;
+  conformal.shapes.threads = context.threads;
+  conformal.blocks = view.map().blocks();
+  const stats::Matrix<float> features = view.features().select_rows(data_.rows);
+  classifier_ = stats::ConformalClassifier::fit(features, data_.labels, static_cast<int>(data_.hypotheses.size()),
+                                                data_.split, conformal, data_.kinds);
+  impostors_ = stats::ImpostorTests::fit(classifier_.pooled().log_densities(features, context.threads), data_.labels,
+                                         data_.split, context.threads);
+  std::vector<int> labels;
+  for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
+  reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);
+}
+
+std::vector<double> HypothesisClassifier::probabilities(std::span<const float> statistics) const {
+  return data_.by_hypothesis(classifier_.pooled().probabilities(map_->features(statistics)));
+}
+
+std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> statistics) const {
+  const std::vector<float> features = map_->features(statistics);
+  const stats::Classification found = classifier_.classify(features);
+  const std::vector<double> log_densities = classifier_.pooled().log_densities(features);
+  std::vector<HypothesisScore> scores;
+  for (const std::string& name : names_) scores.push_back({name});
+  for (std::size_t c = 0; c < data_.hypotheses.size(); ++c) {
+    HypothesisScore& score = scores[data_.hypotheses[c]];
+    score.probability = found.probabilities[c];
+    score.p_relative = found.p_relative[c];
+    score.p_absolute = found.p_absolute[c];
+    score.p = found.p[c];
+    score.least_p = classifier_.least_p(c);
+    if (c > 0) score.p_own = impostors_.p(c, log_densities);
+  }
+  return scores;
+}
+
+std::vector<FeatureName> HypothesisClassifier::telling_features(std::size_t n) const {
+  std::vector<std::size_t> order(map_->names().size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<double>& importance = classifier_.pooled().trees().importance();
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return importance[a] > importance[b]; });
+  std::vector<FeatureName> names;
+  for (std::size_t i = 0; i < std::min(n, order.size()); ++i) names.push_back(map_->names()[order[i]]);
+  return names;
+}
+
 namespace {
 
 using effects::ParameterInfo;

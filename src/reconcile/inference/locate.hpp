@@ -2,12 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "reconcile/ensemble/reference_table.hpp"
 #include "reconcile/inference/feature_map.hpp"
+#include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 
@@ -29,5 +34,72 @@ enum class Part { all, training, calibration };
 [[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Part part);
 /// Of an effect that is in the table.
 [[nodiscard]] std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect);
+
+// A study with the reference table that its data are compared with, and how the table looks in some of the trials: its
+// datasets' features, and what the global test says of them.
+
+/// Everything that doesn't depend on which effects are candidates, worked out once: what only a classifier asks for, at
+/// its first question, since data that agree with the model need none. Immutable to whoever looks at it.
+class TableView {
+ public:
+  /// scene, frame and table must outlive it. trials: those that are looked at (sorted).
+  TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
+            const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads);
+
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  [[nodiscard]] const StudyFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const ReferenceTable& table() const noexcept { return table_; }
+  [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
+  /// (n_rows x n_features) of the table's rows.
+  [[nodiscard]] const stats::Matrix<float>& features() const { return rows().features; }
+  /// (n_plain_datasets x n_statistics)
+  [[nodiscard]] const stats::Matrix<float>& plain() const noexcept { return plain_; }
+  /// The global test's p for a dataset's statistics.
+  [[nodiscard]] double p(std::span<const float> statistics) const;
+  /// The global test's p for a row of the table that has an effect and is held back for calibration; 1 for others.
+  [[nodiscard]] double p_of_row(std::size_t row) const { return rows().p[row]; }
+
+ private:
+  /// Of the table.
+  struct Rows {
+    stats::Matrix<float> features;  ///< (n_rows x n_features)
+    std::vector<double> p;          ///< (n_rows)
+  };
+  [[nodiscard]] const Rows& rows() const;
+
+  const SceneSpec& scene_;
+  const StudyFrame& frame_;
+  const ReferenceTable& table_;
+  FeatureMap map_;
+  unsigned threads_;
+  stats::Matrix<float> plain_;
+  stats::EnvelopeReference plain_reference_;  ///< of what the global test looks at
+  mutable std::once_flag rows_known_;
+  mutable Rows rows_;
+};
+
+// A study with the reference table that its data are compared with.
+
+/// For one shape of data.
+struct ReferenceStudy {
+  RealizationSource source;
+  StudyFrame frame;
+  std::vector<CellKnowledge> knowledge;
+  DataShape shape;
+  ReferenceTable table;
+  std::string key;  ///< of the table
+
+  /// What the plain model's training datasets say of these trials (sorted).
+  [[nodiscard]] FeatureMap map(std::vector<std::size_t> trials) const;
+  /// The table as it looks in these trials (sorted); must not outlive the study.
+  [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
+};
+[[nodiscard]] ReferenceStudy make_reference_study(
+    const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
+    const std::function<DataShape(const StudyFrame&, std::span<const Series> pilot)>& shape_of_data,
+    const Context& context = {});
+
+/// Names of the catalogue's effects that mean nothing to any sensor of the study.
+[[nodiscard]] std::vector<std::string> idle_effects(const SceneSpec& scene, const ScriptSpec& script);
 
 }  // namespace pirsim::reconcile

@@ -1,21 +1,108 @@
-#include "reconcile/inference/loop.hpp"
-
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "core/digest.hpp"
-#include "effects/catalogue.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "model/core/parallel.hpp"
+#include "model/core/random.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/data/data_check.hpp"
-#include "reconcile/data/units.hpp"
+#include "reconcile/data/measured.hpp"
+#include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
-#include "reconcile/inference/range_end.hpp"
 #include "reconcile/inference/residuals.hpp"
-#include "reconcile/inference/superposition.hpp"
 #include "reconcile/inference/verify.hpp"
+#include "stats/classes.hpp"
+#include "stats/conformal.hpp"
+
+// Effect after effect, until the model with them can have made the data.
 
 namespace pirsim::reconcile {
+
+/// One reconciliation in the making.
+class Loop {
+ public:
+  Loop(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
+       const Context& context)
+      : scene_(scene), script_(script), measured_(measured), settings_(settings), context_(context) {}
+  [[nodiscard]] Outcome run();
+
+ private:
+  /// A look at the data with the table of one model.
+  struct Step {
+    ReferenceStudy reference;
+    std::shared_ptr<const TableView> view;  ///< of the reference's table, in the trials that are looked at
+    std::vector<DataNote> notes;            ///< what was done with which measured rows
+    std::vector<DataFinding> findings;      ///< what is wrong with them; of the first look
+    std::vector<float> observed;            ///< statistics of the measured data
+    Outcome outcome;
+    SeenRows seen;
+    std::size_t likeliest = 0;            ///< hypothesis
+    FittedEffect best;                    ///< of that hypothesis
+    std::vector<FittedEffect> relatives;  ///< of the effect named: what it may be taken for
+  };
+  const Step& look(const Settings& settings, double level);
+  bool look_beyond(RangeEnd& end);  ///< true if a strength there passes: it is applied
+  void apply_first();               ///< stronger than was looked for if only that does
+  /// A name that a relative would do twice as well without is one of the two.
+  void compare_relatives();
+  void take_look();  ///< with all that has been applied
+  void apply_more();
+  /// With all that was applied; none if no effect may explain the rest, or people can hardly get about in that model.
+  const Step* look_for_more(double level);
+  /// Effects that are worth a table beside those that were applied: beside one, those that the first table doesn't rule
+  /// out as its partner; beside more, all that were asked for.
+  [[nodiscard]] std::optional<std::vector<std::string>> worth_a_table(double level) const;
+  void tell_first(const Step& first);
+  void tell(TrailEvent event) { outcome_.trail.push_back(std::move(event)); }
+  void conclude();
+  [[nodiscard]] bool is_nearest() const;  ///< the one effect applied comes near enough to be told as such
+  void take_back();                       ///< the one name that was given
+  void explain();
+  void explain_rest();
+  void verify_effects();
+  /// p of the global test of the model with all that has been applied, its data simulated anew.
+  [[nodiscard]] GlobalP p_with_all(double level) const;
+  [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] std::vector<EffectSpec> patch() const;
+  [[nodiscard]] std::vector<std::size_t> training_trials() const;
+
+  const SceneSpec& scene_;
+  const ScriptSpec& script_;
+  const Measured& measured_;
+  const Settings& settings_;
+  const Context& context_;
+  std::deque<Step> steps_;             ///< addresses stay
+  std::vector<FittedEffect> applied_;  ///< one of each step
+  bool passes_ = false;                ///< the model with all of them can have made the data
+  std::optional<Verdict> rest_;        ///< of the last look for more, where one was needed
+  Outcome outcome_;
+};
+
+// Which second effect may explain, beside a first one, what no effect explains alone?
+
+struct Partner {
+  std::string effect;
+  double p = 0.0;  ///< of "the two together made the data"
+};
+/// Effects with which the first one may have made the data, the likeliest first. No pair is simulated: in a realization
+/// that has a dataset of either effect, what each changes in the features is added up. A partner is told if these
+/// superposed datasets are often enough as strange among themselves as the data are (p above the level, as in the
+/// absolute test of the classifier). A superposition is no simulation (docs/validation.md tells how often it
+/// finds the true partner). first: hypothesis, 1 or more. measured: statistics.
+[[nodiscard]] std::vector<Partner> partners_of(const TableView& view, std::size_t first,
+                                               std::span<const float> measured, double level, const Context& context);
+
 namespace {
 
 /// Beside one effect: more of them would take more than a minute to simulate (assumed).
@@ -389,6 +476,78 @@ Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measur
   require_known_presence(script);
   const ScriptSpec held = with_holds(scene, script, measured);
   return Loop(scene, held, measured, settings, context).run();
+}
+
+namespace {
+
+constexpr std::size_t fewest_pairs = 60;  ///< superposed datasets: two thirds of fewer have no shape (assumed)
+
+using RowIn = std::map<std::uint32_t, std::size_t>;  ///< realization -> row of the table
+
+std::vector<RowIn> rows_by_realization(const ReferenceTable& table) {
+  std::vector<RowIn> rows(table.n_hypotheses());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) rows[table.rows[i].hypothesis][table.rows[i].realization] = i;
+  return rows;
+}
+
+stats::Matrix<float> superposed(const stats::Matrix<float>& features, const RowIn& plain, const RowIn& first,
+                                const RowIn& second) {
+  stats::Matrix<float> sums;
+  for (const auto& [realization, row] : first) {
+    const auto other = second.find(realization), none = plain.find(realization);
+    if (other == second.end() || none == plain.end()) continue;
+    std::vector<float> sum(features.columns());
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      sum[i] = features(row, i) + features(other->second, i) - features(none->second, i);
+    sums.append_row(std::span<const float>(sum));
+  }
+  return sums;
+}
+
+/// How strange the data are among the rows, by the strangest block: p of two thirds of them against the others.
+double p_among(const stats::Matrix<float>& rows, std::span<const float> data,
+               const std::vector<std::vector<std::size_t>>& blocks, std::uint64_t seed) {
+  std::vector<std::size_t> fitting, calibration;
+  for (std::size_t i = 0; i < rows.rows(); ++i) (i % 3 == 0 ? calibration : fitting).push_back(i);
+  stats::Matrix<double> known(calibration.size(), blocks.size());
+  std::vector<double> own;
+  const std::vector<int> one_class(fitting.size(), 0);
+  stats::Matrix<float> wanted;
+  wanted.append_row(data);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const stats::Matrix<float> block = rows.select_columns(blocks[b]);
+    const auto shape = stats::ClassShapes::fit(block.select_rows(fitting), one_class, 1, {.seed = seed, .threads = 1});
+    for (std::size_t i = 0; i < calibration.size(); ++i)
+      known(i, b) = std::cbrt(shape.strangeness(block.row(calibration[i]), 0));
+    own.push_back(std::cbrt(shape.strangeness(wanted.select_columns(blocks[b]).row(0), 0)));
+  }
+  return stats::StrangestMeasure(known).p(own);
+}
+
+}  // namespace
+
+std::vector<Partner> partners_of(const TableView& view, std::size_t first, std::span<const float> measured,
+                                 double level, const Context& context) {
+  const ReferenceTable& table = view.table();
+  const std::vector<RowIn> rows = rows_by_realization(table);
+  const std::vector<float> data = view.map().features(measured);
+  std::vector<Partner> partners;
+  std::size_t second = 0;
+  ordered_parallel<double>(
+      table.n_hypotheses() - 1, context.threads,
+      [&](std::size_t i) {
+        if (i + 1 == first) return 0.0;
+        const stats::Matrix<float> pairs = superposed(view.features(), rows[0], rows[first], rows[i + 1]);
+        // Too few to tell: not ruled out, but after all that are compared.
+        if (pairs.rows() < fewest_pairs) return std::nextafter(level, 1.0);
+        return p_among(pairs, data, view.map().blocks(), context.seed);
+      },
+      [&](double& p) {
+        ++second;
+        if (p > level) partners.push_back({table.hypothesis_name(second), p});
+      });
+  std::ranges::stable_sort(partners, std::ranges::greater{}, &Partner::p);
+  return partners;
 }
 
 }  // namespace pirsim::reconcile

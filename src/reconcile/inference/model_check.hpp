@@ -4,10 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "reconcile/inference/reference_study.hpp"
+#include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
 
@@ -36,5 +37,24 @@ struct GlobalP {
 /// map: features of the plain model, for the trials to be looked at. level: of the global test.
 [[nodiscard]] std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
                                           const FeatureMap& map, double level, const Context& context);
+
+// Effects that are stronger than what was looked for.
+
+/// The parameter of a fitted effect that lies in the last tenth of its prior, on the scale on which that is flat; the
+/// strength before the others. None if all lie within, or at the end at which next to nothing happens.
+[[nodiscard]] std::optional<RangeEnd> range_end_of(const FittedEffect& fitted);
+
+/// The end of its strength's prior that is farther from none on the fitted side, wherever the fit lies. Data of a far
+/// stronger effect are like none of the prior's, and a fit to them may land anywhere. None without a strength.
+[[nodiscard]] std::optional<RangeEnd> strong_end_of(const FittedEffect& fitted);
+
+/// Tries the effect with that parameter ever farther beyond the end, each step a third farther from none, up to twenty
+/// times as far or to what a script may say, the other parameters as they were fitted. The strength of the greatest p
+/// is taken; its interval goes from the step before the first that passes to the step after the last. None if no step
+/// passes: `end` then only tells how far was tried. measured: statistics.
+[[nodiscard]] std::optional<FittedEffect> fitted_beyond(const FittedEffect& fitted, RangeEnd& end,
+                                                        const ReferenceStudy& reference, const FeatureMap& map,
+                                                        std::span<const float> measured, double level,
+                                                        const Context& context);
 
 }  // namespace pirsim::reconcile

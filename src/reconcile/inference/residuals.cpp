@@ -3,14 +3,414 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "core/parallel.hpp"
-#include "reconcile/inference/residual_contrasts.hpp"
-#include "reconcile/inference/residual_drivers.hpp"
+#include "model/core/parallel.hpp"
+#include "model/schema/actions.hpp"
+#include "reconcile/inference/locate.hpp"
 #include "stats/intervals.hpp"
-#include "stats/logistic.hpp"
+#include "stats/trees.hpp"
+
+// What residuals may depend on: who and when.
 
 namespace pirsim::reconcile {
+
+/// Cells (trial x sensor).
+struct Who {
+  ResidualDriver::Who who = ResidualDriver::Who::all_sensors;
+  std::string name;                 ///< of the sensor or the trial
+  std::vector<std::uint8_t> cells;  ///< (n_cells) 1: looked at
+};
+/// Weight of each row of a trial's main part.
+struct When {
+  ResidualDriver::When when = ResidualDriver::When::always;
+  double from = 0.0, to = 0.0;
+  std::vector<std::vector<double>> weight;  ///< (n_trials x n_main)
+
+  [[nodiscard]] bool is_always() const noexcept { return when == ResidualDriver::When::always; }
+  /// It rises and falls; others have two values.
+  [[nodiscard]] bool is_wave() const noexcept { return when == ResidualDriver::When::wave; }
+};
+
+[[nodiscard]] std::vector<Who> all_who(const ReferenceStudy& reference);
+[[nodiscard]] std::vector<When> all_when(const ReferenceStudy& reference);
+
+namespace {
+
+using DriverWhen = ResidualDriver::When;
+
+constexpr std::size_t fewest_runs = 4;   ///< of three a step can't be told from a trend
+constexpr double fewest_awaited = 15.0;  ///< rows of a run (assumed): the share of fewer is chance
+constexpr double least_variance = 0.02;  ///< of a run's log odds (assumed): no model is known better
+constexpr double much_sds = 2.0;         ///< off (1, 1.5, 2 and none were tried)
+constexpr double least_scatter = 0.05;   ///< of a contrast's values (assumed): a row more or less of some tens
+
+/// Indices of the data's runs as they follow each other.
+std::vector<std::size_t> in_order(const std::vector<DataShape::Run>& runs) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::pair(runs[i].replicate, runs[i].trial); });
+  return order;
+}
+
+/// Log odds that an awaited row is silent, against the model's datasets. Weights are one over the scatter in these.
+class RunOdds {
+ public:
+  RunOdds(const std::vector<ContrastData>& simulated, std::size_t column) : column_(column) {
+    const auto n = static_cast<double>(simulated.size());
+    for (std::size_t run = 0; run < simulated.front().gaps.size(); ++run) {
+      double awaited = 0.0, sum = 0.0, squares = 0.0;
+      for (const ContrastData& one : simulated) {
+        const double odds = log_odds(one.gaps[run][column]);
+        awaited += one.gaps[run][column].awaited / n;
+        sum += odds / n;
+        squares += odds * odds / n;
+      }
+      mean_.push_back(sum);
+      const double variance = std::max(0.0, squares - sum * sum) + least_variance;
+      sd_.push_back(std::sqrt(variance));
+      weight_.push_back(awaited < fewest_awaited ? 0.0 : 1.0 / variance);
+    }
+  }
+  [[nodiscard]] double weight(std::size_t run) const { return weight_[run]; }
+  /// 0 where too little is awaited to tell. Drawn in at the ends: a change of the session is in many runs, and a
+  /// strange run is no change.
+  [[nodiscard]] double off(const ContrastData& data, std::size_t run) const {
+    const Gaps& gaps = data.gaps[run][column_];
+    if (gaps.awaited < fewest_awaited) return 0.0;
+    return std::clamp(log_odds(gaps) - mean_[run], -much_sds * sd_[run], much_sds * sd_[run]);
+  }
+
+ private:
+  static double log_odds(const Gaps& gaps) {
+    return std::log((gaps.silent + 1.0) / (gaps.awaited - gaps.silent + 1.0));
+  }
+
+  std::size_t column_;
+  std::vector<double> mean_, sd_, weight_;  ///< (n_runs)
+};
+
+/// A weighted sum of log odds over the runs, with weights that sum up to 0.
+struct Contrast {
+  ResidualDriver driver;     ///< who and when
+  std::size_t column = 0;    ///< of ContrastData::gaps
+  std::vector<double> load;  ///< (n_runs) for log odds
+};
+
+/// The least-squares slope of log odds on `along` (n_runs).
+std::vector<double> slope_loads(const RunOdds& odds, const std::vector<double>& along) {
+  double weight = 0.0, middle = 0.0, squares = 0.0;
+  for (std::size_t run = 0; run < along.size(); ++run) {
+    weight += odds.weight(run);
+    middle += odds.weight(run) * along[run];
+  }
+  if (weight <= 0.0) return {};
+  middle /= weight;
+  std::vector<double> loads;
+  for (std::size_t run = 0; run < along.size(); ++run) {
+    loads.push_back(odds.weight(run) * (along[run] - middle));
+    squares += loads.back() * (along[run] - middle);
+  }
+  if (squares < 1e-9) return {};
+  for (double& load : loads) load /= squares;
+  return loads;
+}
+
+class Session {
+ public:
+  Session(const StudyFrame& frame, const DataShape& shape, const std::vector<ContrastData>& simulated)
+      : order_(in_order(shape.runs)) {
+    if (order_.size() < fewest_runs) return;
+    const std::size_t n_sensors = frame.sensors.size();
+    for (std::size_t column = 0; column < 1 + n_sensors; ++column) {
+      odds_.emplace_back(simulated, column);
+      ResidualDriver driver;
+      driver.how = ResidualDriver::How::with_gaps;
+      if (column > 0) {
+        driver.who = ResidualDriver::Who::sensor;
+        driver.name = frame.sensors[column - 1];
+      }
+      driver.when = DriverWhen::from_trial_to_trial;
+      add(driver, column, [](std::size_t place) { return static_cast<double>(place); });
+      driver.when = DriverWhen::from_trial;
+      for (std::size_t first = 1; first < order_.size(); ++first) {
+        const DataShape::Run& run = shape.runs[order_[first]];
+        driver.since = frame.trials[run.trial];
+        if (shape.n_replicates > 1) driver.since += " of run " + std::to_string(run.replicate);
+        add(driver, column, [first](std::size_t place) { return place >= first ? 1.0 : 0.0; });
+      }
+      if (n_sensors == 1) break;  // all are the one
+    }
+  }
+  [[nodiscard]] const std::vector<Contrast>& contrasts() const noexcept { return contrasts_; }
+  [[nodiscard]] double value(const Contrast& contrast, const ContrastData& data) const {
+    double sum = 0.0;
+    for (std::size_t run = 0; run < contrast.load.size(); ++run)
+      sum += contrast.load[run] * odds_[contrast.column].off(data, run);
+    return sum;
+  }
+
+ private:
+  template <typename Along>
+  void add(const ResidualDriver& driver, std::size_t column, const Along& of_place) {
+    std::vector<double> along(order_.size());
+    for (std::size_t place = 0; place < order_.size(); ++place) along[order_[place]] = of_place(place);
+    auto loads = slope_loads(odds_[column], along);
+    if (!loads.empty()) contrasts_.push_back({driver, column, std::move(loads)});
+  }
+
+  std::vector<std::size_t> order_;
+  std::vector<RunOdds> odds_;  ///< (1 + n_sensors)
+  std::vector<Contrast> contrasts_;
+};
+
+/// The strongest of some contrasts of data, against the strongest in each simulated dataset.
+/// measured: (n_contrasts), simulated: (n_datasets x n_contrasts); drivers: (n_contrasts). Gaps at the same moments
+/// less often than by chance have no known cause: of these one side is looked at.
+std::optional<ResidualDriver> strongest(std::span<const ResidualDriver> drivers, const std::vector<double>& measured,
+                                        const std::vector<std::vector<double>>& simulated) {
+  const auto n = static_cast<double>(simulated.size());
+  std::vector<double> mean(drivers.size(), 0.0), sd(drivers.size(), 0.0);
+  for (const auto& values : simulated) {
+    for (std::size_t i = 0; i < values.size(); ++i) mean[i] += values[i] / n;
+  }
+  for (const auto& values : simulated) {
+    for (std::size_t i = 0; i < values.size(); ++i) sd[i] += (values[i] - mean[i]) * (values[i] - mean[i]) / n;
+  }
+  const auto z = [&](const std::vector<double>& values, std::size_t i) { return (values[i] - mean[i]) / sd[i]; };
+  const auto size = [&](const std::vector<double>& values, std::size_t i) {
+    const bool one_sided = drivers[i].how == ResidualDriver::How::silent_together;
+    return one_sided ? z(values, i) : std::abs(z(values, i));
+  };
+  const auto best_of = [&](const std::vector<double>& values) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) best = size(values, i) > size(values, best) ? i : best;
+    return best;
+  };
+  if (drivers.empty()) return std::nullopt;
+  for (double& s : sd) s = std::sqrt(s + least_scatter * least_scatter);
+  const std::size_t best = best_of(measured);
+  const auto beyond = std::ranges::count_if(simulated, [&](const std::vector<double>& values) {
+    return size(values, best_of(values)) >= size(measured, best);
+  });
+  ResidualDriver driver = drivers[best];
+  driver.log_odds = measured[best] - mean[best];
+  driver.standard_error = sd[best];
+  driver.z = z(measured, best);
+  driver.up = driver.z > 0.0;
+  driver.p = std::min(1.0, n_contrast_kinds * (1.0 + static_cast<double>(beyond)) / (1.0 + n));
+  driver.least_p = n_contrast_kinds / (1.0 + n);
+  return driver;
+}
+
+}  // namespace
+
+ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std::span<const Series> runs) {
+  const std::size_t n = frame.sensors.size();
+  ContrastData data;
+  std::vector<Series> seen;
+  for (const DataShape::Run& wanted : shape.runs) {
+    std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n);
+    const auto run = std::ranges::find_if(
+        runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
+    if (run == runs.end()) continue;
+    Series& main = seen.emplace_back(*run);
+    main.main_end = std::min(main.main_end, main.main_begin + wanted.n_main);
+    const std::size_t first = main.main_begin * n;
+    for (std::size_t i = 0; i < std::min(wanted.unknown.size(), main.main_end * n - first); ++i) {
+      if (wanted.unknown[i] != 0) main.bits[first + i] = unknown_bit;
+    }
+    const std::vector<Gaps> own = gaps_of(main, n);
+    for (std::size_t s = 0; s < n; ++s) {
+      gaps[0].awaited += own[s].awaited;
+      gaps[0].silent += own[s].silent;
+      gaps[1 + s] = own[s];
+    }
+  }
+  data.joint_silence = joint_silence(seen, n).log_ratio();
+  return data;
+}
+
+std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const DataShape& shape,
+                                              const ContrastData& measured, const std::vector<ContrastData>& simulated,
+                                              double alpha) {
+  std::vector<ResidualDriver> telling;
+  const auto look = [&](std::span<const ResidualDriver> drivers, const auto& values_of) {
+    std::vector<std::vector<double>> usual;
+    for (const ContrastData& one : simulated) usual.push_back(values_of(one));
+    const auto found = strongest(drivers, values_of(measured), usual);
+    if (found && found->p <= alpha) telling.push_back(*found);
+  };
+  const Session session(frame, shape, simulated);
+  const auto look_at_session = [&](const auto& wanted) {
+    std::vector<const Contrast*> contrasts;
+    std::vector<ResidualDriver> drivers;
+    for (const Contrast& contrast : session.contrasts()) {
+      if (!wanted(contrast)) continue;
+      contrasts.push_back(&contrast);
+      drivers.push_back(contrast.driver);
+    }
+    look(drivers, [&](const ContrastData& data) {
+      std::vector<double> values;
+      for (const Contrast* contrast : contrasts) values.push_back(session.value(*contrast, data));
+      return values;
+    });
+  };
+  look_at_session([](const Contrast& contrast) { return contrast.column == 0; });
+  look_at_session([](const Contrast& contrast) { return contrast.column > 0; });
+  ResidualDriver together;
+  together.how = ResidualDriver::How::silent_together;
+  look(std::span(&together, 1), [](const ContrastData& data) { return std::vector<double>{data.joint_silence}; });
+  std::ranges::stable_sort(telling, std::ranges::greater{}, [](const ResidualDriver& d) { return std::abs(d.z); });
+  return telling;
+}
+
+namespace {
+
+using DriverWhen = ResidualDriver::When;
+
+Who cells_of(const ReferenceStudy& reference, ResidualDriver::Who who, std::string name,
+             const std::function<bool(std::size_t trial, std::size_t sensor)>& holds) {
+  Who one{who, std::move(name), {}};
+  for (std::size_t trial = 0; trial < reference.frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor)
+      one.cells.push_back(holds(trial, sensor) ? 1 : 0);
+  }
+  return one;
+}
+
+/// Adds what depends on the time since the main part began and on its length alone. Weights have the mean 0 in each
+/// run, so that a seat or a sensor that sees more all the time isn't taken for a matter of time.
+class Times {
+ public:
+  explicit Times(const ReferenceStudy& reference) : reference_(reference) {}
+
+  void add(ResidualDriver::When kind, double from, double to,
+           const std::function<double(double time_s, double length_s)>& weight) {
+    When when{kind, from, to, {}};
+    for (const Profile::Trial& trial : reference_.table.profile.trials) {
+      when.weight.emplace_back();
+      const double length_s = static_cast<double>(trial.n_main) * reference_.frame.window_s;
+      double mean = 0.0;
+      for (std::size_t row = 0; row < trial.n_main; ++row) {
+        when.weight.back().push_back(weight((static_cast<double>(row) + 0.5) * reference_.frame.window_s, length_s));
+        mean += when.weight.back().back() / static_cast<double>(trial.n_main);
+      }
+      if (when.is_always()) continue;
+      for (double& w : when.weight.back()) w -= mean;
+    }
+    all.push_back(std::move(when));
+  }
+  /// A part of the run, from and to as shares of its length.
+  void add_part(ResidualDriver::When kind, double from, double to) {
+    add(kind, from, to, [=](double t, double length) { return t >= from * length && t < to * length ? 1.0 : 0.0; });
+  }
+  /// n equal parts of every period; kind_of(begin, end) says what they are.
+  void add_phases(double period_s, int n, const std::function<When(double, double)>& kind_of) {
+    for (int i = 0; i < n; ++i) {
+      const double begin = period_s * i / n, end = period_s * (i + 1) / n;
+      const When kind = kind_of(begin, end);
+      add(kind.when, kind.from, kind.to, [=](double t, double) {
+        const double phase = std::fmod(t, period_s);
+        return phase >= begin && phase < end ? 1.0 : 0.0;
+      });
+    }
+  }
+
+  std::vector<When> all;
+
+ private:
+  const ReferenceStudy& reference_;
+};
+
+const action::Work* first_work(const ScriptSpec& script) {
+  for (const TrialSpec& trial : script.trials) {
+    if (const auto* work = first<action::Work>(trial)) return work;
+  }
+  return nullptr;
+}
+
+void add_posture(Times& times, double period_s) {
+  constexpr int parts = 6;
+  times.add_phases(period_s, parts, [&](double begin, double end) {
+    return When{end > period_s - 1e-9 ? DriverWhen::before_posture : DriverWhen::after_posture, begin, end, {}};
+  });
+}
+
+void add_waves(Times& times, double longest_s) {
+  constexpr std::array<double, 11> periods_s{40, 45, 50, 56, 63, 71, 80, 90, 101, 113, 127};
+  constexpr int phases = 8;
+  for (const double period_s : periods_s) {
+    if (1.5 * period_s > longest_s) continue;
+    for (int i = 0; i < phases; ++i) {
+      const double top_s = period_s * i / phases;
+      times.add(DriverWhen::wave, period_s, top_s,
+                [=](double t, double) { return std::cos(2.0 * std::numbers::pi * (t - top_s) / period_s); });
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Who> all_who(const ReferenceStudy& reference) {
+  using enum ResidualDriver::Who;
+  std::vector<Who> all{cells_of(reference, all_sensors, {}, [](auto, auto) { return true; })};
+  const StudyFrame& frame = reference.frame;
+  for (std::size_t s = 0; s < frame.sensors.size(); ++s)
+    all.push_back(cells_of(reference, sensor, frame.sensors[s], [s](auto, std::size_t number) { return number == s; }));
+  for (std::size_t t = 0; t < frame.trials.size(); ++t)
+    all.push_back(cells_of(reference, trial, frame.trials[t], [t](std::size_t number, auto) { return number == t; }));
+  const auto knowledge = [&](std::size_t t, std::size_t s) -> const CellKnowledge& {
+    return reference.knowledge[frame.cell(t, s)];
+  };
+  std::vector<double> distances;
+  for (const CellKnowledge& cell : reference.knowledge) distances.push_back(cell.distance_m);
+  const double near = stats::quantile(distances, 1.0 / 3.0), far = stats::quantile(distances, 2.0 / 3.0);
+  all.push_back(cells_of(reference, near_seat, {},
+                         [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m < near; }));
+  all.push_back(cells_of(reference, far_from_seat, {},
+                         [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m > far; }));
+  all.push_back(
+      cells_of(reference, faced, {}, [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing > 0.5; }));
+  all.push_back(
+      cells_of(reference, behind, {}, [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing < -0.5; }));
+  return all;
+}
+
+std::vector<When> all_when(const ReferenceStudy& reference) {
+  Times times(reference);
+  double longest_s = 0.0;
+  for (const Profile::Trial& trial : reference.table.profile.trials)
+    longest_s = std::max(longest_s, static_cast<double>(trial.n_main) * reference.frame.window_s);
+  times.add(DriverWhen::always, 0.0, 0.0, [](double, double) { return 1.0; });
+  times.add_part(DriverWhen::first_half, 0.0, 0.5);
+  times.add_part(DriverWhen::second_half, 0.5, 1.0);
+  times.add_part(DriverWhen::first_third, 0.0, 1.0 / 3.0);
+  times.add_part(DriverWhen::middle_third, 1.0 / 3.0, 2.0 / 3.0);
+  times.add_part(DriverWhen::last_third, 2.0 / 3.0, 1.0);
+  constexpr double minute_s = 60.0;
+  if (longest_s >= 2.0 * minute_s) {
+    times.add_phases(minute_s, 10, [](double begin, double end) {
+      return When{DriverWhen::of_minute, begin, end, {}};
+    });
+  }
+  if (const action::Work* work = first_work(reference.source.script)) {
+    if (longest_s >= 2.0 * work->tilt_every_s && work->tilt_choices_deg.size() > 1)
+      add_posture(times, work->tilt_every_s);
+    times.add_phases(work->arm_period_s, 3, [&](double begin, double end) {
+      return When{DriverWhen::of_arm_cycle, 100.0 * begin / work->arm_period_s, 100.0 * end / work->arm_period_s, {}};
+    });
+  }
+  add_waves(times, longest_s);
+  return std::move(times.all);
+}
+
 namespace {
 
 constexpr std::uint32_t first_residual_realization = 1U

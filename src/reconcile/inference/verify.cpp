@@ -8,13 +8,12 @@
 #include <sstream>
 #include <utility>
 
-#include "core/parallel.hpp"
-#include "core/text.hpp"
-#include "effects/catalogue.hpp"
-#include "reconcile/inference/decision.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "model/core/parallel.hpp"
+#include "model/core/text.hpp"
+#include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/inference/reference_study.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {

@@ -10,7 +10,7 @@
 
 #include "pirsim/script.hpp"
 #include "reconcile/data/measured.hpp"
-#include "reconcile/inference/classifier.hpp"
+#include "reconcile/inference/fit.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {

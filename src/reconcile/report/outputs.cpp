@@ -1,17 +1,16 @@
-#include "core/text.hpp"
-#include "reconcile/data/units.hpp"
-#include "reconcile/report/pages.hpp"
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
 
-#include "io/files/atomic_file.hpp"
+#include "files/disk/file.hpp"
+#include "model/core/text.hpp"
+#include "model/schema/fields.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
+#include "reconcile/data/measured.hpp"
+#include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "io/pages/charts.hpp"
-#include "io/pages/report.hpp"
 #include "pirsim/reconcile.hpp"
-#include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/selftest.hpp"
+#include "reconcile/selftest/plan.hpp"
+#include "reconcile/selftest/selftest.hpp"
+#include "show/charts.hpp"
+#include "show/report.hpp"
 
 namespace pirsim::reconcile {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "pirsim/reconcile.hpp"
-#include "reconcile/data/longer_study.hpp"
-#include "reconcile/validation/plan.hpp"
-#include "reconcile/validation/selftest.hpp"
+#include "reconcile/selftest/plan.hpp"
+#include "reconcile/selftest/selftest.hpp"
+#include "show/report.hpp"
 
 namespace pirsim::reconcile {
 
@@ -60,5 +60,18 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
 /// So many digits after the point; never "-0".
 [[nodiscard]] std::string fixed(double value, int digits);
+
+// What is wrong with the measured rows themselves, in words.
+
+/// The outcome without what was found in the file: its verdict is that of the comparison.
+[[nodiscard]] Outcome as_compared(const Outcome& outcome);
+/// Of the verdict faulty_data: what is wrong with the file.
+[[nodiscard]] std::string sentence_of_file(const Outcome& outcome);
+/// Then what the comparison says.
+[[nodiscard]] std::vector<std::string> details_of_faulty(const Outcome& outcome);
+/// What a reader may do with that verdict.
+[[nodiscard]] std::string next_step_of_faulty(const Outcome& outcome);
+/// Part of the report.
+[[nodiscard]] io::ReportSection file_section(const std::vector<DataFinding>& findings);
 
 }  // namespace pirsim::reconcile

@@ -1,10 +1,11 @@
-// Reasons, notes, events and residuals in words.
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "core/text.hpp"
+#include "model/core/text.hpp"
 #include "reconcile/report/sentences.hpp"
+
+// Reasons, notes, events and residuals in words.
 
 namespace pirsim::reconcile {
 namespace {

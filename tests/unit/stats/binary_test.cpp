@@ -1,4 +1,4 @@
-#include "stats/binary.hpp"
+#include "reconcile/ensemble/reference_table.hpp"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "stats/pooled_classifier.hpp"
+#include "stats/trees.hpp"
 
 #include <algorithm>
 #include <cmath>

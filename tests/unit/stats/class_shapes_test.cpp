@@ -1,4 +1,4 @@
-#include "stats/class_shapes.hpp"
+#include "stats/classes.hpp"
 
 #include <algorithm>
 #include <cmath>

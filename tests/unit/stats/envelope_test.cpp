@@ -1,4 +1,4 @@
-#include "stats/envelope.hpp"
+#include "stats/intervals.hpp"
 
 #include <algorithm>
 #include <cmath>

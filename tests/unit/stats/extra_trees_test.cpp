@@ -1,4 +1,4 @@
-#include "stats/extra_trees.hpp"
+#include "stats/trees.hpp"
 
 #include <cmath>
 #include <numeric>

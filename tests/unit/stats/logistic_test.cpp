@@ -1,4 +1,4 @@
-#include "stats/logistic.hpp"
+#include "stats/trees.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "stats/discriminant.hpp"
+#include "stats/classes.hpp"
 
 #include <algorithm>
 #include <array>

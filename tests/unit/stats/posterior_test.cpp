@@ -1,4 +1,4 @@
-#include "stats/posterior.hpp"
+#include "stats/intervals.hpp"
 
 #include <cmath>
 #include <vector>

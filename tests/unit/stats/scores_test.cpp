@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "files/write/summary.hpp"
 #include "pirsim/error.hpp"
-#include "studies/summary.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim::stats;

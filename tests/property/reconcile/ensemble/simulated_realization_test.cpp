@@ -2,7 +2,7 @@
 // effects.
 #include <algorithm>
 
-#include "reconcile/ensemble/simulated_realization.hpp"
+#include "reconcile/ensemble/realization.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

@@ -1,4 +1,4 @@
-#include "reconcile/data/bit_statistics.hpp"
+#include "reconcile/data/statistics.hpp"
 
 #include <array>
 #include <utility>

@@ -1,5 +1,5 @@
 // Silence that sensors share, against closed forms.
-#include "reconcile/data/gaps.hpp"
+#include "reconcile/data/alignment.hpp"
 
 #include <cmath>
 #include <vector>

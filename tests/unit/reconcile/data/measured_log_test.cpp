@@ -1,5 +1,5 @@
 // Logs as measured data, against windows that were filled by hand.
-#include "reconcile/data/measured_log.hpp"
+#include "reconcile/data/measured_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,6 @@
 
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
-#include "reconcile/data/bit_statistics.hpp"
 
 #include "support/catch.hpp"
 

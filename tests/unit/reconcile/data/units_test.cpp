@@ -1,12 +1,11 @@
 // Units of days against counts that were looked up reading by reading.
-#include "reconcile/data/units.hpp"
+#include "reconcile/data/measured.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <set>
 
-#include "reconcile/data/measured.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

@@ -1,5 +1,5 @@
 // What is drawn of counts, against what they leave open.
-#include "reconcile/ensemble/presence_draw.hpp"
+#include "reconcile/ensemble/realization.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Simulated datasets on disk.
-#include "reconcile/ensemble/table_store.hpp"
+#include "reconcile/ensemble/reference_table.hpp"
 
 #include <filesystem>
 

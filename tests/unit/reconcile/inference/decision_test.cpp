@@ -1,4 +1,4 @@
-#include "reconcile/inference/decision.hpp"
+#include "reconcile/inference/analyst.hpp"
 
 #include "support/catch.hpp"
 

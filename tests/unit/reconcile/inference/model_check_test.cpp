@@ -1,7 +1,7 @@
 // The global test of a model with effects applied, on a shortened Study A.
 #include "reconcile/inference/model_check.hpp"
 
-#include "reconcile/ensemble/simulated_realization.hpp"
+#include "reconcile/ensemble/realization.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

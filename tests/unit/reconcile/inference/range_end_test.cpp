@@ -1,8 +1,8 @@
 // Strengths beyond the range that was looked for.
-#include "reconcile/inference/range_end.hpp"
+#include "reconcile/inference/model_check.hpp"
 
-#include "effects/catalogue.hpp"
-#include "reconcile/ensemble/simulated_realization.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "reconcile/ensemble/realization.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"

@@ -1,5 +1,5 @@
 // Contrasts of a session made by hand: binomial gaps, of which a share changes.
-#include "reconcile/inference/residual_contrasts.hpp"
+#include "reconcile/inference/residuals.hpp"
 
 #include <algorithm>
 #include <functional>

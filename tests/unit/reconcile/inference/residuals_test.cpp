@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "pirsim/study.hpp"
-#include "reconcile/inference/reference_study.hpp"
+#include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/residuals.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"

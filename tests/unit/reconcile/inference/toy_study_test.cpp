@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "reconcile/inference/decision.hpp"
+#include "reconcile/inference/analyst.hpp"
 #include "stats/conformal.hpp"
-#include "stats/envelope.hpp"
+#include "stats/intervals.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 #include "support/toy_catalogue.hpp"

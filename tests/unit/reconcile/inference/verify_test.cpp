@@ -3,11 +3,10 @@
 
 #include <algorithm>
 
-#include "core/digest.hpp"
+#include "model/core/random.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/inference/reference_study.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 

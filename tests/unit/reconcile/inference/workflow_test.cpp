@@ -5,18 +5,17 @@
 #include <iterator>
 #include <set>
 
-#include "core/digest.hpp"
-#include "effects/catalogue.hpp"
-#include "io/pages/page_parts.hpp"
+#include "engine/effects/catalogue.hpp"
+#include "engine/sim/compiled_study.hpp"
+#include "model/core/random.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/inference/reference_study.hpp"
 #include "reconcile/inference/verify.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "sim/compiled_study.hpp"
+#include "show/report.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "reconcile/inference/decision.hpp"
+#include "reconcile/inference/analyst.hpp"
 #include "reconcile/report/pages.hpp"
 #include "support/catch.hpp"
 

@@ -1,0 +1,571 @@
+#include "logs/counter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "files/disk/file.hpp"
+#include "model/core/parallel.hpp"
+#include "model/schema/limits.hpp"
+#include "pirsim/counting.hpp"
+#include "pirsim/error.hpp"
+
+namespace pirsim::counting {
+namespace {
+
+double choose(int n, int k) {
+  double ways = 1.0;
+  for (int i = 1; i <= k; ++i) ways *= static_cast<double>(n - k + i) / i;
+  return k < 0 || k > n ? 0.0 : ways;
+}
+
+double normalize(std::span<double> values) {
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  for (double& value : values) value /= sum;
+  return sum;
+}
+
+}  // namespace
+
+void divide_rows(std::span<double> table, std::size_t n_columns) {
+  for (std::size_t row = 0; row < table.size(); row += n_columns) normalize(table.subspan(row, n_columns));
+}
+
+std::vector<Reading> readings_of(const Stretch& stretch) {
+  std::vector<Reading> readings(stretch.n_readings());
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    for (std::size_t k = 0; k < size(stretch.n_sensors); ++k) {
+      const std::uint8_t bit = stretch.motion[i * size(stretch.n_sensors) + k];
+      readings[i].known += bit == unknown_bit ? 0 : 1;
+      readings[i].active += bit == 1 ? 1 : 0;
+    }
+    if (!stretch.people.empty()) readings[i].people = stretch.people[i];
+  }
+  return readings;
+}
+
+StateRange states_of(const Counter& counter, const Reading& reading) {
+  if (reading.people == unknown_count) return {0, size(counter.n_states())};
+  const std::size_t count = size(std::min(reading.people, counter.n_counts - 1)), modes = size(counter.settings.modes);
+  return {count * modes, (count + 1) * modes};
+}
+
+void likelihood(const Counter& counter, std::span<const double> emissions, const Reading& reading,
+                std::vector<double>& out) {
+  const std::size_t n_symbols = size(counter.n_symbols());
+  const StateRange range = states_of(counter, reading);
+  out.assign(size(counter.n_states()), 0.0);
+  for (std::size_t state = range.begin; state < range.end; ++state) {
+    const std::span<const double> own = emissions.subspan(state * n_symbols, n_symbols);
+    if (reading.known == counter.n_sensors) {
+      out[state] = own[size(reading.active)];
+      continue;
+    }
+    const int unknown = counter.n_sensors - reading.known;
+    for (int all = reading.active; all <= reading.active + unknown; ++all) {
+      out[state] += own[size(all)] * choose(all, reading.active) *
+                    choose(counter.n_sensors - all, reading.known - reading.active) /
+                    choose(counter.n_sensors, reading.known);
+    }
+  }
+}
+
+double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
+            const Reading& reading, std::span<double> after) {
+  const std::size_t n = size(counter.n_states());
+  const StateRange range = states_of(counter, reading);
+  std::vector<double> seen;
+  likelihood(counter, room.emissions, reading, seen);
+  std::ranges::fill(after, 0.0);
+  if (before.empty()) std::ranges::copy(room.first, after.begin());
+  for (std::size_t from = range_before.begin; from < range_before.end && !before.empty(); ++from) {
+    for (std::size_t to = range.begin; to < range.end; ++to) after[to] += before[from] * counter.moves[from * n + to];
+  }
+  for (std::size_t state = 0; state < n; ++state) after[state] *= seen[state];
+  return normalize(after);
+}
+
+ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings) {
+  const std::size_t n = size(counter.n_states());
+  ForwardPass pass{std::vector<double>(readings.size() * n), 0.0};
+  std::span<const double> before;
+  StateRange range;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const std::span<double> now(pass.beliefs.data() + i * n, n);
+    pass.log_likelihood += std::log(step(counter, room, before, range, readings[i], now));
+    before = now;
+    range = states_of(counter, readings[i]);
+  }
+  return pass;
+}
+
+void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
+            std::span<double> moved) {
+  const std::size_t n = size(counter.n_states());
+  constexpr double most_ratio = 1e290;  // finite, however sure the past was of what the future refutes
+  std::vector<double> ratio(n);         // of what is believed of the next reading to what was expected of it
+  for (std::size_t i = readings.size() < 2 ? 0 : readings.size() - 1; i-- > 0;) {
+    const std::span<double> now(beliefs.data() + i * n, n), next(beliefs.data() + (i + 1) * n, n);
+    const StateRange range = states_of(counter, readings[i]), after = states_of(counter, readings[i + 1]);
+    std::ranges::fill(ratio, 0.0);
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      for (std::size_t to = after.begin; to < after.end; ++to) ratio[to] += now[from] * counter.moves[from * n + to];
+    }
+    for (std::size_t to = after.begin; to < after.end; ++to)
+      ratio[to] = next[to] > 0.0 ? std::min(next[to] / ratio[to], most_ratio) : 0.0;
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      double later = 0.0;
+      for (std::size_t to = after.begin; to < after.end; ++to) {
+        const double factor = counter.moves[from * n + to] * ratio[to];
+        later += factor;
+        if (!moved.empty()) moved[from * n + to] += now[from] * factor;
+      }
+      now[from] *= later;
+    }
+    normalize(now);
+  }
+}
+
+// The Baum-Welch algorithm where the counts are known and the modes are not.
+
+namespace {
+
+constexpr double least_move = 1e-3;  ///< pseudo-moves, shared as the first ones are: none becomes impossible
+
+int counts_of(std::span<const LabelledRoom> rooms) {
+  int most = 0;
+  for (const LabelledRoom& room : rooms) {
+    for (const Stretch& day : room.days) {
+      for (const int n : day.people) most = std::max(most, n);
+    }
+  }
+  return most + 1;
+}
+
+/// How often each symbol comes with each count, in all rooms.
+std::vector<double> seen_by_count(const Counter& counter, std::span<const LabelledRoom> rooms) {
+  constexpr double pseudo_count = 1.0;
+  const std::size_t n_symbols = size(counter.n_symbols());
+  std::vector<double> seen(size(counter.n_counts) * n_symbols, pseudo_count);
+  for (const LabelledRoom& room : rooms) {
+    for (const Stretch& day : room.days) {
+      for (const Reading& reading : readings_of(day)) {
+        if (reading.people != unknown_count && reading.known == counter.n_sensors)
+          seen[size(reading.people) * n_symbols + size(reading.active)] += 1.0;
+      }
+    }
+  }
+  divide_rows(seen, n_symbols);
+  return seen;
+}
+
+std::vector<double> moves_by_count(const Counter& counter, std::span<const LabelledRoom> rooms) {
+  constexpr double pseudo_count = 0.1;
+  std::vector<double> moves(size(counter.n_counts * counter.n_counts), pseudo_count);
+  for (const LabelledRoom& room : rooms) {
+    for (const Stretch& day : room.days) {
+      for (std::size_t i = 1; i < day.people.size(); ++i) {
+        if (day.people[i - 1] != unknown_count && day.people[i] != unknown_count)
+          moves[size(day.people[i - 1] * counter.n_counts + day.people[i])] += 1.0;
+      }
+    }
+  }
+  divide_rows(moves, size(counter.n_counts));
+  return moves;
+}
+
+/// Where Baum-Welch begins: modes from quiet to busy, in which motion is less and more likely than on average.
+std::vector<double> first_emissions(const Counter& counter, std::span<const LabelledRoom> rooms) {
+  constexpr double odds = 4.0;  // between neighbouring modes; assumed, 2 to 8 tried
+  const std::size_t n_symbols = size(counter.n_symbols());
+  const std::vector<double> by_count = seen_by_count(counter, rooms);
+  std::vector<double> emissions;
+  for (int count = 0; count < counter.n_counts; ++count) {
+    for (int mode = 0; mode < counter.settings.modes; ++mode) {
+      const double tilt = std::pow(odds, mode - 0.5 * (counter.settings.modes - 1));
+      for (std::size_t symbol = 0; symbol < n_symbols; ++symbol)
+        emissions.push_back(by_count[size(count) * n_symbols + symbol] * (symbol == 0 ? 1.0 : tilt));
+    }
+  }
+  divide_rows(emissions, n_symbols);
+  return emissions;
+}
+
+std::vector<double> first_moves(const Counter& counter, std::span<const LabelledRoom> rooms) {
+  constexpr double stays = 0.9;  // in its mode; assumed
+  const std::size_t modes = size(counter.settings.modes), n = size(counter.n_states());
+  const std::vector<double> by_count = moves_by_count(counter, rooms);
+  std::vector<double> moves(n * n);
+  for (std::size_t from = 0; from < n; ++from) {
+    for (std::size_t to = 0; to < n; ++to) {
+      const double anywhere = 1.0 / static_cast<double>(modes);
+      const bool same_count = from / modes == to / modes;
+      const double of_mode = same_count ? (1.0 - stays) * anywhere + (from == to ? stays : 0.0) : anywhere;
+      moves[from * n + to] = by_count[from / modes * size(counter.n_counts) + to / modes] * of_mode;
+    }
+  }
+  divide_rows(moves, n);
+  return moves;
+}
+
+/// What is expected of one room.
+struct Expected {
+  std::vector<double> moved;  ///< (states x states)
+  std::vector<double> seen;   ///< (states x symbols)
+  std::vector<double> been;   ///< (states)
+};
+
+Expected expected_of(const Counter& counter, const LabelledRoom& room, const RoomModel& model) {
+  const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
+  Expected expected{std::vector<double>(n * n, 0.0), std::vector<double>(n * n_symbols, 0.0),
+                    std::vector<double>(n, 0.0)};
+  for (const Stretch& day : room.days) {
+    const std::vector<Reading> readings = readings_of(day);
+    std::vector<double> beliefs = forward(counter, model, readings).beliefs;
+    smooth(counter, readings, beliefs, expected.moved);
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      for (std::size_t state = 0; state < n; ++state) {
+        const double belief = beliefs[i * n + state];
+        expected.been[state] += belief;
+        if (readings[i].known == counter.n_sensors)
+          expected.seen[state * n_symbols + size(readings[i].active)] += belief;
+      }
+    }
+  }
+  return expected;
+}
+
+void add(std::vector<double>& sum, const std::vector<double>& more) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+}
+
+/// One iteration: what is expected of all rooms, then what explains it best.
+std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> rooms,
+                            const std::vector<double>& moves_at_first, unsigned threads) {
+  const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
+  std::vector<Expected> each;
+  ordered_parallel<Expected>(
+      rooms.size(), threads, [&](std::size_t r) { return expected_of(counter, rooms[r], counter.rooms[r]); },
+      [&](Expected& one) { each.push_back(std::move(one)); });
+  constexpr double pseudo_count = 0.5;
+  std::vector<double> been(n, 1e-6), seen(n * n_symbols, pseudo_count), moved = moves_at_first;
+  for (double& move : moved) move *= least_move;
+  for (const Expected& one : each) {
+    add(been, one.been);
+    add(seen, one.seen);
+    add(moved, one.moved);
+  }
+  divide_rows(moved, n);
+  divide_rows(seen, n_symbols);
+  counter.moves = std::move(moved);
+  for (std::size_t r = 0; r < each.size(); ++r) {
+    for (std::size_t i = 0; i < seen.size(); ++i) each[r].seen[i] += counter.settings.shrinkage * seen[i];
+    divide_rows(each[r].seen, n_symbols);
+    counter.rooms[r].emissions = std::move(each[r].seen);
+  }
+  return been;
+}
+
+/// A room's counts as often as they were there, each in modes as in all rooms.
+std::vector<double> first_of(const Counter& counter, const LabelledRoom& room, const std::vector<double>& been) {
+  std::vector<double> counts(size(counter.n_counts), 1.0), first(been);
+  for (const Stretch& day : room.days) {
+    for (const int n : day.people) {
+      if (n != unknown_count) counts[size(n)] += 1.0;
+    }
+  }
+  divide_rows(counts, counts.size());
+  divide_rows(first, size(counter.settings.modes));
+  for (std::size_t state = 0; state < first.size(); ++state)
+    first[state] *= counts[state / size(counter.settings.modes)];
+  return first;
+}
+
+void require_alike(std::span<const LabelledRoom> rooms) {
+  if (rooms.empty()) throw Error(ErrorCode::input, "there is no room to learn from");
+  const auto lacks_days = std::ranges::find_if(rooms, [](const LabelledRoom& room) { return room.days.empty(); });
+  if (lacks_days != rooms.end())
+    throw Error(ErrorCode::input, "room " + std::to_string(lacks_days->number) + " has no days to learn from");
+  const int n_sensors = rooms.front().days.front().n_sensors;
+  for (const LabelledRoom& room : rooms) {
+    for (const Stretch& day : room.days) {
+      if (day.n_sensors != n_sensors || day.n_sensors == 0)
+        throw Error(ErrorCode::input, "rooms " + std::to_string(rooms.front().number) + " and " +
+                                          std::to_string(room.number) + " have " + std::to_string(n_sensors) + " and " +
+                                          std::to_string(day.n_sensors) +
+                                          " sensors: a counter learns from rooms that have as many");
+      if (day.people.size() != day.n_readings())
+        throw Error(ErrorCode::input, "room " + std::to_string(room.number) + ": its readings have no counts");
+    }
+  }
+  if (counts_of(rooms) < 2) throw Error(ErrorCode::input, "nobody is in any of the rooms: there is nothing to learn");
+}
+
+}  // namespace
+
+Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads) {
+  require_alike(rooms);
+  Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}, {}};
+  const std::vector<double> moves_at_first = first_moves(counter, rooms);
+  counter.moves = moves_at_first;
+  const std::vector<double> emissions = first_emissions(counter, rooms);
+  const std::vector<double> anywhere(size(counter.n_states()), 1.0 / counter.n_states());
+  for (const LabelledRoom& room : rooms)
+    counter.rooms.push_back({room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, emissions});
+  std::vector<double> been = anywhere;
+  for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, moves_at_first, threads);
+  for (std::size_t r = 0; r < rooms.size(); ++r) counter.rooms[r].first = first_of(counter, rooms[r], been);
+  return counter;
+}
+
+namespace {
+
+/// Adds the probabilities of each count, whatever the mode.
+void add_counts(std::span<const double> beliefs, double weight, std::size_t modes, std::span<double> counts) {
+  for (std::size_t state = 0; state < beliefs.size(); ++state) counts[state / modes] += weight * beliefs[state];
+}
+
+constexpr double nobody_knows = std::numeric_limits<double>::quiet_NaN();
+constexpr double never_s = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::vector<double> log_likelihoods(const Counter& counter, std::span<const Stretch> stretches) {
+  std::vector<double> sums(counter.rooms.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    const std::vector<Reading> readings = readings_of(stretch);
+    for (std::size_t r = 0; r < sums.size(); ++r)
+      sums[r] += forward(counter, counter.rooms[r], readings).log_likelihood;
+  }
+  return sums;
+}
+
+void weigh(Counter& counter, std::span<const double> log_likelihoods) {
+  const double most = *std::ranges::max_element(log_likelihoods);
+  double sum = 0.0;
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    RoomModel& room = counter.rooms[r];
+    room.weight = std::exp(counter.settings.weight_power * (log_likelihoods[r] - most));
+    sum += room.weight;
+  }
+  for (RoomModel& room : counter.rooms) room.weight /= sum;
+}
+
+std::vector<char> told_readings(const Stretch& stretch, double step_s, Pass pass) {
+  const std::vector<Reading> readings = readings_of(stretch);
+  std::vector<char> told(readings.size(), 0);
+  double unknown_s = never_s;
+  const auto look = [&](std::size_t i) {
+    unknown_s = readings[i].known > 0 ? 0.0 : unknown_s + step_s;
+    if (unknown_s <= longest_guess_s) told[i] = 1;
+  };
+  for (std::size_t i = 0; i < readings.size(); ++i) look(i);
+  unknown_s = never_s;
+  for (std::size_t i = readings.size(); pass == Pass::smoothed && i-- > 0;) look(i);
+  return told;
+}
+
+bool Estimates::is_told(std::size_t reading) const { return !std::isnan(probabilities[reading * size(n_counts)]); }
+
+int Estimates::quantile(std::size_t reading, double share) const {
+  double reached = 0.0;
+  for (int n = 0; n < n_counts - 1; ++n) {
+    reached += probabilities[reading * size(n_counts) + size(n)];
+    if (reached >= share - 1e-9) return n;
+  }
+  return n_counts - 1;
+}
+
+Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
+  const std::vector<Reading> readings = readings_of(stretch);
+  const std::size_t modes = size(counter.settings.modes);
+  Estimates mixed{counter.n_counts, std::vector<double>(readings.size() * size(counter.n_counts), 0.0)};
+  for (const RoomModel& room : counter.rooms) {
+    if (!(room.weight > 0.0)) continue;
+    std::vector<double> own = forward(counter, room, readings).beliefs;
+    if (pass == Pass::smoothed) smooth(counter, readings, own);
+    add_counts(own, room.weight, modes, mixed.probabilities);
+  }
+  const std::vector<char> told = told_readings(stretch, counter.settings.step_s, pass);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i] == 0)
+      std::ranges::fill(std::span(mixed.probabilities).subspan(i * size(mixed.n_counts), size(mixed.n_counts)),
+                        nobody_knows);
+  }
+  return mixed;
+}
+
+LiveCount::LiveCount(const Counter& counter) : counter_(&counter), unknown_s_(never_s) {}
+
+std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
+  const Counter& counter = *counter_;
+  if (bits.size() != size(counter.n_sensors)) {
+    throw Error(ErrorCode::usage, "expected " + std::to_string(counter.n_sensors) + " bits, one a sensor, got " +
+                                      std::to_string(bits.size()));
+  }
+  const std::size_t n = size(counter.n_states());
+  const Reading reading = readings_of({counter.n_sensors, {bits.begin(), bits.end()}}).front();
+  std::vector<double> counts(size(counter.n_counts), 0.0), next(counter.rooms.size() * n);
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    const std::span<const double> before = belief_.empty() ? std::span<double>() : std::span(belief_).subspan(r * n, n);
+    const std::span<double> now = std::span(next).subspan(r * n, n);
+    static_cast<void>(step(counter, counter.rooms[r], before, {0, n}, reading, now));
+    add_counts(now, counter.rooms[r].weight, size(counter.settings.modes), counts);
+  }
+  belief_ = std::move(next);
+  unknown_s_ = reading.known > 0 ? 0.0 : unknown_s_ + counter.settings.step_s;
+  if (unknown_s_ > longest_guess_s) std::ranges::fill(counts, nobody_knows);
+  return counts;
+}
+
+// A counter as JSON.
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int format_version = 1;
+
+/// Probabilities in rows that add up to 1.
+std::vector<double> probabilities(const Json& json, std::size_t n_rows, std::size_t n_columns) {
+  const bool all_numbers = std::ranges::all_of(json, [](const Json& value) { return value.is_number(); });
+  if (!json.is_array() || !all_numbers) throw std::domain_error("a table isn't a list of numbers");
+  const auto values = json.get<std::vector<double>>();
+  if (values.size() != n_rows * n_columns) throw std::domain_error("a table has another size than its counts ask for");
+  for (std::size_t row = 0; row < n_rows; ++row) {
+    double sum = 0.0;
+    for (std::size_t column = 0; column < n_columns; ++column) {
+      const double value = values[row * n_columns + column];
+      if (!(value >= 0.0 && value <= 1.0)) throw std::domain_error("a probability isn't between 0 and 1");
+      sum += value;
+    }
+    if (std::abs(sum - 1.0) > 1e-6) throw std::domain_error("probabilities don't add up to 1");
+  }
+  return values;
+}
+
+double positive(const Json& json, const char* what) {
+  const double value = json.get<double>();
+  if (!(value > 0.0) || !std::isfinite(value)) throw std::domain_error(std::string(what) + " isn't above 0");
+  return value;
+}
+
+int whole(const Json& json, const char* what, int least, int most) {
+  const double value = json.is_number_integer() ? json.get<double>() : least - 1.0;
+  if (value < least || value > most) {
+    throw std::domain_error(std::string(what) + " isn't a whole number from " + std::to_string(least) + " to " +
+                            std::to_string(most));
+  }
+  return json.get<int>();
+}
+
+/// No reading is impossible, whoever is there: else there may be nobody left to believe in. Products with moves and
+/// beliefs stay far above the least number that there is.
+std::vector<double> emissions(const Json& json, std::size_t n_states, std::size_t n_symbols) {
+  constexpr double least = 1e-100;  // assumed: of training the least is some 1e-9
+  std::vector<double> values = probabilities(json, n_states, n_symbols);
+  if (!std::ranges::all_of(values, [](double value) { return value >= least; }))
+    throw std::domain_error("an emission is below 1e-100: no reading is impossible");
+  return values;
+}
+
+std::vector<std::string> names(const Json& json, int n_sensors) {
+  auto names = json.get<std::vector<std::string>>();
+  if (names.size() != size(n_sensors)) throw std::domain_error("sensor_names has another number of names than sensors");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::ranges::find(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), names[i]) != names.end())
+      throw std::domain_error("sensor_names has '" + names[i] + "' twice");
+  }
+  return names;
+}
+
+std::vector<std::optional<double>> holds(const Json& json, int n_sensors) {
+  std::vector<std::optional<double>> holds;
+  for (const Json& one : json) {
+    if (!one.is_null() && !(one.get<double>() >= 0.0)) throw std::domain_error("holds_s has a value below 0");
+    holds.push_back(one.is_null() ? std::nullopt : std::optional(one.get<double>()));
+  }
+  if (holds.size() != size(n_sensors)) throw std::domain_error("holds_s has another number of values than sensors");
+  return holds;
+}
+
+const Json& member(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key)) throw std::domain_error(std::string(key) + " is missing");
+  return json.at(key);
+}
+
+Counter counter_from(const Json& json) {
+  if (member(json, "pirsim_counter") != format_version)
+    throw std::domain_error("pirsim_counter: this pirsim reads version " + std::to_string(format_version));
+  if (const auto model = json.find("model"); model != json.end())
+    throw std::domain_error("it counts by another model than hidden Markov; pirsim.counting of Python counts with it");
+  constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000;
+  Counter counter;
+  counter.settings.step_s = positive(member(json, "step_s"), "step_s");
+  constexpr double longest_step_s = 86'400.0;
+  if (counter.settings.step_s > longest_step_s) throw std::domain_error("step_s is longer than a day");
+  counter.settings.modes = whole(member(json, "modes"), "modes", 1, most_modes);
+  counter.n_sensors = whole(member(json, "sensors"), "sensors", 1, most_sensors);
+  counter.n_counts = whole(member(json, "counts"), "counts", 2, most_counts);
+  const std::size_t n = size(counter.n_states());
+  counter.moves = probabilities(member(json, "moves"), n, n);
+  double weights = 0.0;
+  for (const Json& room : member(json, "rooms")) {
+    RoomModel& model = counter.rooms.emplace_back();
+    constexpr int most_rooms = 1'000'000'000;
+    model.number = whole(member(room, "room"), "room", 0, most_rooms);
+    model.weight = member(room, "weight").get<double>();
+    if (!(model.weight >= 0.0)) throw std::domain_error("a weight is below 0");
+    weights += model.weight;
+    model.first = probabilities(member(room, "first"), 1, n);
+    model.emissions = emissions(member(room, "emissions"), n, size(counter.n_symbols()));
+  }
+  if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
+  if (const auto error = json.find("expected_error"); error != json.end())
+    counter.expected_error = Interval{error->at(0).get<double>(), error->at(1).get<double>()};
+  if (const auto warning = json.find("warning"); warning != json.end()) counter.warning = warning->get<std::string>();
+  if (const auto told = json.find("sensor_names"); told != json.end())
+    counter.sensors = names(*told, counter.n_sensors);
+  if (const auto told = json.find("holds_s"); told != json.end()) counter.holds_s = holds(*told, counter.n_sensors);
+  return counter;
+}
+
+}  // namespace
+
+void write_counter(const std::filesystem::path& file, const Counter& counter) {
+  Json rooms = Json::array();
+  for (const RoomModel& room : counter.rooms) {
+    rooms.push_back(
+        {{"room", room.number}, {"weight", room.weight}, {"first", room.first}, {"emissions", room.emissions}});
+  }
+  Json json{{"pirsim_counter", format_version}, {"step_s", counter.settings.step_s}, {"modes", counter.settings.modes},
+            {"sensors", counter.n_sensors},     {"counts", counter.n_counts},        {"moves", counter.moves},
+            {"rooms", std::move(rooms)}};
+  if (!counter.warning.empty()) json["warning"] = counter.warning;
+  if (!counter.sensors.empty()) json["sensor_names"] = counter.sensors;
+  for (const std::optional<double>& hold_s : counter.holds_s)
+    json["holds_s"].push_back(hold_s ? Json(*hold_s) : Json());
+  if (counter.expected_error) json["expected_error"] = {counter.expected_error->low, counter.expected_error->high};
+  io::write_text_file(file, json.dump() + '\n');
+}
+
+std::string read_counter_bytes(const std::filesystem::path& file) {
+  return io::read_input(file, limits::counter_bytes).bytes;
+}
+
+Counter parse_counter(std::string_view bytes, const std::string& name) {
+  try {
+    return counter_from(Json::parse(bytes));
+  } catch (const nlohmann::json::parse_error&) {
+    throw Error(ErrorCode::input, Where{name}, "isn't a counter: pirsim calibrate and pirsim.counting write one");
+  } catch (const std::exception& fault) {
+    throw Error(ErrorCode::input, Where{name}, std::string("isn't a counter as it should be: ") + fault.what());
+  }
+}
+
+Counter read_counter(const std::filesystem::path& file) {
+  return parse_counter(read_counter_bytes(file), file.string());
+}
+
+}  // namespace pirsim::counting

@@ -1,0 +1,718 @@
+#include "logs/log_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "logs/log_head.hpp"
+#include "logs/log_proof.hpp"
+#include "logs/times.hpp"
+#include "model/core/text.hpp"
+#include "model/schema/limits.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr std::string_view publishes = "MQTT publish: topic '", with_payload = "', payload '";
+
+/// What stands between two texts; none if one of them isn't there.
+std::optional<std::string_view> between(std::string_view text, std::string_view begin, std::string_view end) {
+  const std::size_t from = text.find(begin);
+  if (from == std::string_view::npos) return std::nullopt;
+  text.remove_prefix(from + begin.size());
+  const std::size_t to = text.find(end);
+  return to == std::string_view::npos ? std::nullopt : std::optional(text.substr(0, to));
+}
+
+/// Terminals' colours, "ESC[0;36m", left out.
+std::string without_colours(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    const std::size_t at = std::min(text.find("\x1B["), text.size());
+    plain += text.substr(0, at);
+    text.remove_prefix(at);
+    if (!text.empty()) text.remove_prefix(std::min(text.find('m'), text.size() - 1) + 1);
+  }
+  return plain;
+}
+
+/// The time of day of "[08:37:08.123][D][...".
+std::optional<std::int64_t> esphome_time(std::string_view text) {
+  const std::size_t end = text.find("][");
+  if (!text.starts_with('[') || end == std::string_view::npos || text.find("][", end + 3) != end + 3)
+    return std::nullopt;
+  const auto stamp = parse_stamp(text.substr(1, end - 1), LogMap::Dates::found);
+  return stamp && stamp->kind == Stamp::Kind::time_of_day ? std::optional(stamp->us) : std::nullopt;
+}
+
+bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+/// "2026-01-25 10:20:47" out of what stands before a message, with its fraction and its offset if it has them.
+std::string_view time_in(std::string_view text) {
+  constexpr std::string_view pattern = "dddd-dd-dd?dd:dd:dd";
+  const auto matches = [](char c, char wanted) {
+    return wanted == 'd' ? c >= '0' && c <= '9' : wanted == '?' ? c == 'T' || c == ' ' : c == wanted;
+  };
+  for (std::size_t at = 0; at + pattern.size() <= text.size(); ++at) {
+    if (!std::ranges::equal(text.substr(at, pattern.size()), pattern, matches)) continue;
+    const std::string_view rest = text.substr(at + pattern.size());
+    std::size_t more = std::min(rest.find_first_not_of(".0123456789Z"), rest.size());
+    if (more < rest.size() && (rest[more] == '+' || rest[more] == '-'))
+      more = std::min(rest.find_first_not_of("0123456789:", more + 1), rest.size());
+    return text.substr(at, pattern.size() + more);
+  }
+  return text.substr(std::min(text.find_first_not_of(' '), text.size()));  // which the timer refuses by name
+}
+
+std::string quoted_field(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+constexpr std::array<std::string_view, 3> properties{"occupancy", "presence", "motion"};
+
+/// The state that a value of JSON tells.
+std::string state_of(const nlohmann::json& value) {
+  if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
+  if (value.is_null()) return "unknown";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace
+
+std::optional<TextLines::Writer> TextLines::writer_of(std::span<const HeadLine> head) {
+  for (const HeadLine& line : head) {
+    if (has(line.text, publishes) || has(line.text, "\tz2m:") || has(line.text, "Zigbee2MQTT:"))
+      return Writer::zigbee2mqtt;
+    if (has(line.text, "] [openhab.") || has(line.text, "] [org.openhab.") || has(line.text, "StateChangedEvent"))
+      return Writer::openhab;
+    if (esphome_time(without_colours(line.text))) return Writer::esphome;
+  }
+  return std::nullopt;
+}
+
+std::string_view TextLines::name() const {
+  switch (writer_) {
+    case Writer::openhab:
+      return "openHAB's log";
+    case Writer::zigbee2mqtt:
+      return "Zigbee2MQTT's log";
+    case Writer::esphome:
+      break;
+  }
+  return "ESPHome's log";
+}
+
+void TextLines::read(const HeadLine& line, std::vector<HeadLine>& rows, LogRemarks& remarks) {
+  const Changes changes = changes_in(without_colours(line.text), line.line, remarks);
+  if (changes.empty()) ++n_other_;
+  for (const Change& change : changes) {
+    rows.push_back({change.time + '\t' + quoted_field(change.sensor) + '\t' + quoted_field(change.state), line.line});
+  }
+}
+
+namespace {
+
+/// "2024-01-31 18:02:11.123 [INFO ] [openhab.event.ItemStateChangedEvent   ] - Item 'Hall' changed from OFF to ON", in
+/// old versions without Item and quotes, of groups with "through" and a member behind it, in new ones with a source.
+std::optional<std::array<std::string, 3>> openhab_change(std::string_view text) {
+  constexpr std::string_view message = "] - ", changed = " changed from ", to = " to ";
+  const std::size_t at = text.find(message), from = text.find(changed);
+  if (at == std::string_view::npos || from == std::string_view::npos || from < at + message.size()) return std::nullopt;
+  const std::string_view before = text.substr(0, at);
+  if (!has(before, "StateChangedEvent")) return std::nullopt;
+  std::string_view name = text.substr(at + message.size(), from - at - message.size());
+  if (name.starts_with("Item '") && name.ends_with('\'')) name = name.substr(6, name.size() - 7);
+  std::string_view state = text.substr(from + changed.size());
+  for (const std::string_view tail : {" through ", " (source: "}) state = state.substr(0, state.rfind(tail));
+  const std::size_t last = state.rfind(to);
+  if (last == std::string_view::npos) return std::nullopt;
+  state.remove_prefix(last + to.size());
+  if (state == "UNDEF" || state == "NULL") state = "unknown";
+  return std::array{std::string(before.substr(0, before.find(" ["))), std::string(name), std::string(state)};
+}
+
+}  // namespace
+
+TextLines::Changes TextLines::changes_in(std::string_view text, int line, LogRemarks& remarks) {
+  if (writer_ == Writer::zigbee2mqtt) return of_zigbee2mqtt(text);
+  if (writer_ == Writer::esphome) return of_esphome(text, line, remarks);
+  const auto change = openhab_change(text);
+  return change ? Changes{{(*change)[0], (*change)[1], (*change)[2]}} : Changes{};
+}
+
+/// "... MQTT publish: topic 'zigbee2mqtt/hall', payload '{"occupancy":true}'": of the device's properties those that
+/// tell motion. With `output: attribute` each has a topic of its own. A device that is offline isn't known.
+TextLines::Changes TextLines::of_zigbee2mqtt(std::string_view text) {
+  const auto topic = between(text, publishes, with_payload);
+  if (!topic) return {};
+  const std::string time(time_in(text.substr(0, text.find(publishes))));
+  std::string_view payload = text.substr(text.find(with_payload) + with_payload.size());
+  payload = payload.substr(0, payload.rfind('\''));
+  std::string device(topic->substr(topic->find('/') + 1));  // without the base topic; npos + 1 is 0
+  const nlohmann::json message = nlohmann::json::parse(payload, nullptr, false);
+  const std::size_t slash = device.rfind('/');
+  const std::string last = slash == std::string::npos ? std::string() : device.substr(slash + 1);
+  std::map<std::string, std::string> states;
+  if (last == "availability") {
+    device.resize(slash);
+    if (!has(payload, "offline")) return {};
+    for (const auto& [property, told] : told_[device]) states[property] = "unavailable";
+  } else if (std::ranges::find(properties, last) != properties.end() && !message.is_object()) {
+    device.resize(slash);
+    states[last] = message.is_discarded() ? std::string(payload) : state_of(message);
+  } else if (message.is_object()) {
+    for (const std::string_view property : properties) {
+      if (const auto found = message.find(property); found != message.end())
+        states[std::string(property)] = state_of(*found);
+    }
+  }
+  Changes changes;
+  for (const auto& [property, state] : states) {
+    Change& before = told_[device][property];
+    Change now{time, device + '_' + property, state};
+    if (before == now) continue;  // another property changed in this second
+    before = now;
+    changes.push_back(std::move(now));
+  }
+  return changes;
+}
+
+/// "[08:37:08][D][binary_sensor:036]: 'Hall PIR': Sending state ON", or "'Hall PIR' >> ON".
+TextLines::Changes TextLines::of_esphome(std::string_view text, int line, LogRemarks& remarks) {
+  const auto us = esphome_time(text);
+  if (!us) return {};
+  std::string time = since_first_midnight(*us, line, remarks);  // of all lines, since a day may pass without motion
+  const std::size_t tag = text.find("][binary_sensor:");
+  const std::size_t begin = text.find('\'', std::min(tag, text.size())), end = text.rfind('\'');
+  if (begin == std::string_view::npos || end <= begin) return {};
+  const std::string_view state = text.substr(text.find_last_of(' ') + 1);
+  if (state != "ON" && state != "OFF" && state != "UNKNOWN") return {};
+  return {{std::move(time), std::string(text.substr(begin + 1, end - begin - 1)), std::string(state)}};
+}
+
+/// Lines stand in the order in which they were written, so that a clock that steps back begins a day.
+std::string TextLines::since_first_midnight(std::int64_t us, int line, LogRemarks& remarks) {
+  constexpr std::int64_t a_jitter_us = 60 * us_per_s, an_hour_twice_us = 7200 * us_per_s;  // assumed
+  const std::int64_t back_us = last_us_ - us;
+  if (back_us > a_jitter_us) {
+    days_us_ += us_per_day;
+    if (back_us < an_hour_twice_us) {
+      remarks.add(
+          "day turns",
+          [&] {
+            return Where{file_, line, 0};
+          },
+          [&] {
+            return "the times step back by " + fixed(static_cast<double>(back_us) / (60.0 * us_per_s), 0) +
+                   " min: it counts as the next day, unless clocks were put back here";
+          });
+    }
+  }
+  last_us_ = us;
+  return fixed(static_cast<double>(days_us_ + us) / us_per_s, 6);
+}
+
+namespace {
+
+constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
+constexpr std::uint64_t most_faults = 1000;
+
+bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
+
+/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in
+/// them.
+bool is_comment(std::string_view line) {
+  if (!line.starts_with('#')) return false;
+  constexpr std::string_view separators = ",;\t";
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    const auto stamp = parse_stamp(line.substr(0, end), LogMap::Dates::found);
+    if (stamp && stamp->kind != Stamp::Kind::number) return false;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return true;
+}
+
+/// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
+bool is_before_table(std::string_view line) {
+  return line.starts_with("sep=") || line.starts_with("Plot Title:") || line.starts_with("\"Plot Title:");
+}
+
+/// What a log isn't, and what to do; empty if it may be a table.
+std::string_view what_is_no_table(std::string_view first) {
+  if (first.starts_with('<')) return "XML or a page: save the log as CSV";
+  if (first.starts_with('{')) return "JSON: save the log as CSV";
+  if (!first.starts_with('[')) return {};
+  const std::size_t inner = first.find_first_not_of(" \t", 1);
+  if (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos)
+    return "JSON: save the log as CSV";
+  return "lines of a text: those of openHAB, Zigbee2MQTT and ESPHome are read";
+}
+
+/// Dashes below the names of columns, as UCI 271 has them.
+bool is_ruler(std::string_view line) {
+  return line.starts_with("---") && line.find_first_not_of("- \t") == std::string_view::npos;
+}
+
+/// Columns that stand below each other, with a tab or two spaces between them, as fields with one tab.
+std::string with_tabs(std::string_view line) {
+  std::string result;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min(line.find_first_not_of(" \t", at), line.size());
+    const std::string_view gap = line.substr(at, end - at);
+    if (!gap.empty() && !result.empty()) result += gap == " " ? ' ' : '\t';
+    const std::size_t next = std::min(line.find_first_of(" \t", end), line.size());
+    result += line.substr(end, next - end);
+    at = next;
+  }
+  while (result.ends_with('\t')) result.pop_back();
+  return result;
+}
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+}  // namespace
+
+LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
+    : path_(path.string()), reading_(reading), observer_(observer), timer_({}, nullptr, 0.0) {
+  if (is_database(path)) {
+    std::vector<std::string> entities{reading.map.people};
+    for (const LogMap::Sensor& sensor : reading.map.sensors) entities.push_back(sensor.in_log);
+    database_.emplace(path, entities);
+    head_.push_back({std::string(HomeDatabase::header), 1});
+  } else {
+    lines_.emplace(path);
+  }
+  read_head();
+  shape_ = shape_of(head_, map_of_head(), path_, reading.zone, reading.rows);
+  timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
+  if (shape_.end) end_timer_.emplace(*shape_.end, reading.zone, reading.map.shift_s);
+  if (shape_.header_line > 0) head_.erase(head_.begin());
+  n_read_fields_ = shape_.n_read_fields();
+  values_.resize(shape_.sensors.size(), log_state::unknown);
+  if (shape_.people) values_.push_back(log_state::unknown_count);
+  reading.rows = shape_.rows;
+  reading.events.begin_file();
+  for (const std::string& name : shape_.doubtful) {
+    remark("left out " + name, shape_.header_line, [&] {
+      return "column '" + name +
+             "' holds states, but isn't called motion, as others are: it is left out; if it is a sensor, name all of "
+             "them in a map (sensors)";
+    });
+  }
+  if (shape_.rows != LogMap::Rows::readings) return;
+  if (shape_.cadence.interval_us <= 0) refuse_head();
+  readings_.emplace(shape_.cadence, values_);
+}
+
+std::optional<HeadLine> LogFile::next_line() {
+  if (database_) {
+    auto row = database_->next();
+    return row ? std::optional(HeadLine{std::move(*row), 0}) : std::nullopt;
+  }
+  while (const auto line = lines_->next()) {
+    if (!has_no_data(*line)) return HeadLine{is_ruled_ ? with_tabs(*line) : std::string(*line), lines_->where().line};
+  }
+  return std::nullopt;
+}
+
+void LogFile::read_head() {
+  std::size_t bytes = 0;
+  while (head_.size() < head_lines && bytes < head_bytes) {
+    auto line = next_line();
+    if (!line) break;
+    bytes += line->text.size();
+    if (head_.empty() && (is_before_table(line->text) || is_comment(line->text))) continue;
+    head_.push_back(std::move(*line));
+  }
+  if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
+  if (database_ && head_.size() == 1)
+    throw Error(ErrorCode::input, Where{path_}, "the database has no state of a binary sensor");
+  if (database_) return;
+  if (const auto writer = TextLines::writer_of(head_)) return read_text_head(*writer);
+  if (head_.size() > 1 && is_ruler(head_[1].text)) {
+    is_ruled_ = true;
+    head_.erase(head_.begin() + 1);
+    for (HeadLine& line : head_) line.text = with_tabs(line.text);
+  }
+  if (const std::string_view other = what_is_no_table(head_.front().text); !other.empty())
+    throw Error(ErrorCode::input, {path_, head_.front().line, 1}, "expected a table, got " + std::string(other));
+}
+
+/// Until it tells something: in a program's log what is looked for may come late.
+void LogFile::read_text_head(TextLines::Writer writer) {
+  text_.emplace(writer, path_);
+  std::vector<HeadLine> rows{{std::string(TextLines::header), 0}};
+  rows.front().line = head_.front().line;
+  for (const HeadLine& line : head_) text_->read(line, rows, reading_.remarks);
+  while (rows.size() == 1) {
+    const auto line = next_line();
+    if (!line) {
+      throw Error(ErrorCode::input, {path_, 1, 1},
+                  "none of the lines of " + std::string(text_->name()) + " tells that a sensor changed");
+    }
+    text_->read(*line, rows, reading_.remarks);
+  }
+  head_ = std::move(rows);
+}
+
+/// What is known of the columns: all, if they were made here.
+LogMap LogFile::map_of_head() const {
+  LogMap map = reading_.map;
+  if (source().empty()) return map;
+  if (map.form != LogMap::Form::found && map.form != LogMap::Form::events)
+    throw Error(ErrorCode::input, Where{path_},
+                std::string(source()) + " has the form `events`, not what the map says");
+  map.form = LogMap::Form::events;
+  map.time = {"time"};
+  map.sensor_column = "sensor";
+  map.state_column = "state";
+  return map;
+}
+
+void LogReading::note_row(std::int64_t us, const std::string& path, int line) {
+  first_us = std::min(first_us.value_or(us), us);
+  last_us = std::max(last_us.value_or(us), us);
+  const std::int64_t month = us / (30 * us_per_day);
+  auto here = months.find(month);
+  if (here == months.end()) here = months.emplace(month, Month{us, us, {path, line, 1}}).first;
+  here->second.first_us = std::min(here->second.first_us, us);
+  here->second.last_us = std::max(here->second.last_us, us);
+  ++here->second.n_rows;
+  if (!map.longest_gap_s) return;
+  const auto [at, is_new] = busy.try_emplace(us / std::llround(*map.longest_gap_s * 1e6), Moments{us, us});
+  at->second = {std::min(at->second.first_us, us), std::max(at->second.last_us, us)};
+}
+
+void LogReading::require_years() const {
+  constexpr std::int64_t longest_us = 366 * us_per_day;  // assumed: 200 to 400 days; who pauses for longer says so
+  const auto is_wanted = [&](const Month& month) {
+    return (!from_us || month.last_us >= *from_us) && (!to_us || month.first_us <= *to_us);
+  };
+  const std::int64_t allowed_us =
+      std::max(longest_us, map.longest_gap_s ? std::int64_t{std::llround(*map.longest_gap_s * 1e6)} : longest_us);
+  std::uint64_t n_before = 0;
+  for (auto at = months.begin(); at != months.end() && std::next(at) != months.end(); ++at) {
+    const Month &before = at->second, &after = std::next(at)->second;
+    n_before += before.n_rows;
+    if (after.first_us - before.last_us <= allowed_us || !is_wanted(before) || !is_wanted(after)) continue;
+    const bool is_late = 2 * n_before >= n_rows;
+    const auto moment = [](std::int64_t us) { return to_text({us, 0}, LogClock::local).substr(0, 10); };
+    throw Error(ErrorCode::input, is_late ? after.where : before.where,
+                "nothing is told from " + moment(before.last_us) + " to " + moment(after.first_us) +
+                    ": was the clock set here? If so, read the parts by themselves (from, to), or say longest_gap_s in "
+                    "a map");
+  }
+}
+
+std::vector<LogReading::Moments> LogReading::silences() const {
+  std::vector<Moments> found;
+  const std::int64_t longest = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 0;
+  for (auto at = busy.begin(); at != busy.end() && std::next(at) != busy.end(); ++at) {
+    const Moments silence{at->second.last_us, std::next(at)->second.first_us};
+    if (silence.last_us - silence.first_us > longest) found.push_back(silence);
+  }
+  return found;
+}
+
+/// No two rows have different times.
+void LogFile::refuse_head() {
+  readings_.emplace(ReadingTracks::Cadence{1, 1}, values_);
+  for (const HeadLine& line : head_) take(line.text, line.line);
+  if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
+  throw Error(ErrorCode::input, {path_, head_.front().line, 1},
+              with_maps("one reading alone doesn't tell for how long it holds", {"interval_s: 30", "rows: changes"}));
+}
+
+// ---------------------------------------------------------------------------------------------------------------- rows
+
+template <typename Message>
+void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
+  reading_.faults.add(
+      kind,
+      [&] {  // counted in the line as it stands, where fields are parts of it
+        int at = 1;
+        for (std::size_t i = 0; i < std::min(column, fields_.size()) && shape_.separator != ' ' && source().empty();
+             ++i)
+          at += static_cast<int>(fields_[i].size()) + 1;
+        return Where{path_, line, at};
+      },
+      message);
+  if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
+}
+
+template <typename Message>
+void LogFile::remark(std::string_view kind, int line, Message message) {
+  reading_.remarks.add(
+      kind,
+      [&] {
+        return Where{path_, line, 0};
+      },
+      message);
+}
+
+void LogFile::read() {
+  for (const HeadLine& line : std::exchange(head_, {})) take(line.text, line.line);
+  constexpr std::uint64_t now_and_then = 1U << 14U;
+  std::vector<HeadLine> rows;
+  const auto tell = [&] {
+    if (observer_.read && reading_.n_rows % now_and_then == 0) observer_.read(reading_.n_rows);
+  };
+  while (database_ || text_ || is_ruled_) {
+    const auto line = next_line();
+    if (!line) return finish();
+    rows.assign(text_ ? 0 : 1, *line);
+    if (text_) text_->read(*line, rows, reading_.remarks);
+    for (const HeadLine& row : rows) take(row.text, row.line);
+    tell();
+  }
+  while (const auto line = lines_->next()) {  // without a copy of each
+    if (has_no_data(*line)) continue;
+    take(*line, lines_->where().line);
+    tell();
+  }
+  finish();
+}
+
+void LogFile::finish() {
+  require_order();
+  if (shape_.form != LogMap::Form::wide || readings_ || n_rows_ == 0) return;
+  for (const std::size_t column : shape_.sensors)  // until its last row, though that may change nothing
+    reading_.events.note(*reading_.events.track(shape_.names[column]), last_us_);
+}
+
+/// A table whose rows often aren't later than those before them has another form.
+void LogFile::require_order() const {
+  if (reading_.map.rows != LogMap::Rows::found || n_disordered_ <= std::max<std::uint64_t>(1, n_rows_ / 100)) return;
+  throw Error(
+      ErrorCode::input, {path_, first_disordered_, 1},
+      with_maps(
+          std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
+              " are no later than rows before them: they tell of several sensors, or clocks were put back, or they "
+              "are to be left out",
+          {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin",
+           std::string("rows: ") + (readings_ ? "readings" : "changes")}));
+}
+
+std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
+  if (text.empty()) return std::nullopt;
+  const bool is_elapsed = timer_.clock() == LogClock::elapsed;
+  if (const auto stamp = parse_stamp(text, shape_.time.order)) {
+    const bool counts = stamp->kind == Stamp::Kind::number || stamp->kind == Stamp::Kind::time_of_day;
+    TimeColumns columns;
+    columns.kind = stamp->kind == Stamp::Kind::date ? Stamp::Kind::local : stamp->kind;
+    const auto us = LogTimer(columns, reading_.zone, 0.0).read_text(text).us;
+    if (us && counts == is_elapsed) return us;
+  }
+  throw Error(ErrorCode::usage, key + ": '" + text + "' is no time of this log; expected " +
+                                    (is_elapsed ? "seconds, or hours:minutes:seconds" : "2026-03-02T08:30"));
+}
+
+std::optional<std::int64_t> LogFile::time_of_row(LogTimer& timer, const TimeColumns& columns, int line) {
+  LogTimer::Read read = timer.read(fields_);
+  if (!read.us) {
+    fault("time", line, columns.first, [&] { return read.fault; });
+    return std::nullopt;
+  }
+  if (read.oddity == LogTimer::Oddity::ambiguous)
+    remark("ambiguous", line, [&] {
+      return "clocks were put back in this hour, which " + reading_.map.time_zone +
+             " has twice; what comes before they step back is taken for the first one";
+    });
+  if (read.oddity == LogTimer::Oddity::missing)
+    remark("missing", line, [&] {
+      return quoted(fields_[columns.first]) + " is a time that " + reading_.map.time_zone +
+             " left out, when clocks were put forward: is it another zone?";
+    });
+  return read.us;
+}
+
+void LogFile::take(std::string_view line, int number) {
+  if (!split_fields(line, shape_.separator, fields_, unquoted_)) {
+    fields_.clear();
+    return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
+  }
+  const std::size_t wanted = shape_.n_fields();
+  const std::size_t least = wanted > 0 ? wanted : n_read_fields_;
+  if (fields_.size() < least || (wanted > 0 && fields_.size() > wanted)) {
+    return fault("fields", number, 0,
+                 [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(fields_.size()); });
+  }
+  const auto us = time_of_row(timer_, shape_.time, number);
+  if (!us) return;
+  ++reading_.n_rows;
+  constexpr std::int64_t half_a_day_us = 43'200'000'000;
+  if (shape_.time.kind == Stamp::Kind::time_of_day && row_us_ && *us < *row_us_ - half_a_day_us) {
+    fault("midnight", number, shape_.time.first, [] {
+      return "the times of day step back over midnight, and no date tells which day it is: name columns of date and "
+             "time in a map (time: [Date, Time])";
+    });
+  }
+  row_us_ = us;
+  reading_.note_row(*us, path_, number);
+  if (shape_.form == LogMap::Form::events) return take_event(*us, number);
+  if (shape_.form == LogMap::Form::intervals) return take_interval(*us, number);
+  read_values(number);
+  const bool is_disordered = n_rows_ > 0 && (readings_ ? *us <= last_us_ : *us < last_us_);
+  if (is_disordered && n_disordered_++ == 0) first_disordered_ = number;
+  ++n_rows_;
+  if (readings_) {
+    take_readings(*us, number);
+  } else if (!is_disordered) {
+    take_changes(*us, number);
+  } else {
+    remark("backward", number, [] { return "the times step back here; rows up to the last time are left out"; });
+  }
+  last_us_ = n_rows_ == 1 ? *us : std::max(last_us_, *us);
+}
+
+/// Of the sensors and people in this row.
+void LogFile::read_values(int line) {
+  const bool keeps_empty = shape_.empty == LogMap::Empty::unchanged;
+  for (std::size_t i = 0; i < shape_.sensors.size(); ++i) {
+    const std::string_view text = fields_[shape_.sensors[i]];
+    if (keeps_empty && is_empty_cell(text)) continue;
+    const auto state = read_state(text);
+    values_[i] = state.value_or(log_state::unknown);
+    if (state) continue;
+    const std::string& name = shape_.names[shape_.sensors[i]];
+    remark("state of " + name, line,
+           [&] { return quoted(text) + " in column '" + name + "' is no state: it counts as unknown"; });
+  }
+  if (!shape_.people) return;
+  const std::string_view text = fields_[*shape_.people];
+  if (keeps_empty && is_empty_cell(text)) return;
+  const auto count = read_count(text);
+  values_.back() = count.value_or(log_state::unknown_count);
+  if (!count) remark("count", line, [&] { return quoted(text) + " is no number of people: it counts as unknown"; });
+}
+
+void LogFile::require_one_run(int line) {
+  if (shape_.runs.empty()) return;
+  std::vector<std::string> run;
+  for (const std::size_t column : shape_.runs) run.emplace_back(fields_[column]);
+  if (run_.empty()) run_ = run;
+  if (run == run_) return;
+  fault("runs", line, shape_.runs.front(), [&] {
+    return "another run begins here (" + joined(run, ", ") + " after " + joined(run_, ", ") +
+           "): a log is one stretch of time in one room; give its rows alone";
+  });
+}
+
+void LogFile::take_readings(std::int64_t us, int line) {
+  require_one_run(line);
+  const std::int64_t stamp = us + (reading_.map.stamps == LogMap::Stamps::begin ? readings_->cadence().interval_us : 0);
+  if ((reading_.from_us && stamp <= *reading_.from_us) || (reading_.to_us && stamp > *reading_.to_us)) return;
+  const auto order = readings_->add(stamp, values_);
+  if (order == ReadingTracks::Order::same)
+    remark("same time", line, [] { return "a second reading of the same time is left out"; });
+  if (order == ReadingTracks::Order::earlier) {
+    remark("backward", line, [&] {
+      return "the times step back here; readings up to the last time before the step are left out" +
+             std::string(timer_.clock() == LogClock::local ? " (were clocks put back? Say time_zone in a map)" : "");
+    });
+  }
+  if (readings_->n_changes() > limits::log_changes)
+    throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
+}
+
+void LogFile::take_changes(std::int64_t us, int line) {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (!last_values_.empty() && last_values_[i] == values_[i]) continue;
+    const bool is_people = i == shape_.sensors.size();
+    EventTracks::Track* track = track_of(shape_.names[is_people ? *shape_.people : shape_.sensors[i]], line);
+    if (track == nullptr) return;
+    ++track->n_states;
+    reading_.events.add(*track, us, values_[i]);
+  }
+  last_values_ = values_;
+}
+
+/// What is no state: of another kind of sensor, or a sensor's fault. From there on nothing is known.
+void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line) {
+  ++track.n_other;
+  if (track.n_states == 0 && track.events.size() == 2) {  // of many in a row, the first and the last tell all
+    track.events.back().us = us;
+    track.is_sorted = track.events.front().us <= us;
+  } else {
+    reading_.events.add(track, us, unknown);
+  }
+  if (track.odd_text.empty()) {
+    track.odd_at = {path_, line, 0};
+    track.odd_text = fields_[*shape_.state];
+  }
+}
+
+EventTracks::Track* LogFile::track_of(std::string_view name, int line) {
+  EventTracks::Track* track = reading_.events.track(name);
+  if (track == nullptr) {
+    fault("sensors", line, shape_.sensor,
+          [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
+  }
+  return track;
+}
+
+EventTracks::Track* LogFile::track_of_row(int line) {
+  std::string_view& name = fields_[shape_.sensor];
+  while (name.starts_with(' ')) name.remove_prefix(1);
+  while (name.ends_with(' ')) name.remove_suffix(1);
+  return track_of(name, line);
+}
+
+void LogFile::take_interval(std::int64_t us, int line) {
+  const auto end = time_of_row(*end_timer_, *shape_.end, line);
+  if (!end) return;
+  if (*end < us) {
+    return fault("end", line, shape_.end->first, [&] {
+      return "it ends at " + quoted(fields_[shape_.end->first]) + ", before it begins at " +
+             quoted(fields_[shape_.time.first]);
+    });
+  }
+  EventTracks::Track* track = track_of_row(line);
+  if (track == nullptr) return;
+  const auto state = shape_.state ? read_state(fields_[*shape_.state]) : std::optional(log_state::on);
+  if (!state || *state == log_state::unknown)
+    return fault("state", line, *shape_.state,
+                 [&] { return quoted(fields_[*shape_.state]) + " doesn't say whether this is motion"; });
+  reading_.note_row(*end, path_, line);
+  ++track->n_states;
+  if (*state == log_state::off) return;  // as between all intervals
+  reading_.events.add(*track, us, log_state::on);
+  reading_.events.add(*track, *end, log_state::off);
+  require_few_events(line);
+}
+
+void LogFile::take_event(std::int64_t us, int line) {
+  EventTracks::Track* track = track_of_row(line);
+  if (track == nullptr) return;
+  const std::string_view name = fields_[shape_.sensor], text = fields_[*shape_.state];
+  const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
+  const auto value = is_people ? read_count(text) : read_state(text);
+  const std::int32_t unknown = is_people ? log_state::unknown_count : log_state::unknown;
+  if (!value) return take_odd_event(*track, us, unknown, line);
+  ++track->n_states;
+  if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value}) {
+    const bool has_label = shape_.separator == ' ' && fields_.size() > n_read_fields_;
+    if (has_label) return;  // CASAS' logs tell of two activities in two lines
+    return remark("same event", line, [&] { return "an event of " + quoted(name) + " stands here a second time"; });
+  }
+  if (!reading_.events.add(*track, us, *value)) {
+    remark("backward", line,
+           [&] { return "the times of " + quoted(name) + " step back here; its events are put in order"; });
+  }
+  require_few_events(line);
+}
+
+void LogFile::require_few_events(int line) const {
+  if (reading_.events.n_events() > limits::log_changes)
+    throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " events");
+}
+
+}  // namespace pirsim::io

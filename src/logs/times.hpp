@@ -1,0 +1,143 @@
+// Microseconds, in which logs are read. Private to io.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+
+inline constexpr std::int64_t us_per_ms = 1'000, us_per_s = 1'000'000, us_per_day = 86'400 * us_per_s;
+
+// What a text says about time. Private to io.
+
+struct Stamp {
+  enum class Kind {
+    number,       ///< of seconds or parts of them, since something
+    time_of_day,  ///< microseconds since midnight
+    date,         ///< its midnight
+    local,        ///< date and time as clocks on the wall show them
+    absolute      ///< with an offset from UTC
+  };
+  Kind kind = Kind::number;
+  std::int64_t us = 0;        ///< since 1970-01-01T00:00: UTC if absolute, else of the local clock
+  std::int32_t offset_s = 0;  ///< of an absolute one: so much is local time ahead
+  double number = 0.0;
+};
+
+/// ISO 8601, what spreadsheets make of it, and JavaScript's local times: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00",
+/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "20190524 19:50:03", "0:00:34", "1743962401"; none for any other
+/// text. `order` counts where the year has two digits or comes last; months come first if neither it nor the numbers
+/// say otherwise. Days that don't exist, as 2025-02-30, are none.
+[[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order);
+
+/// What a text with a date tells of the order of dates; none: it has no date, or one that begins with a year of four
+/// digits.
+struct DateOrder {
+  LogMap::Dates order = LogMap::Dates::found;      ///< found: it leaves that open
+  LogMap::Dates year_last = LogMap::Dates::found;  ///< the same, if the year is known to be last
+  int first = 0, last = 0;                         ///< its numbers
+};
+[[nodiscard]] std::optional<DateOrder> order_of_date(std::string_view text);
+
+/// "20260514": eight digits that are a date.
+[[nodiscard]] bool is_date_of_digits(std::string_view text);
+/// "AM", "p.m."
+[[nodiscard]] bool is_half_of_day(std::string_view text);
+/// "UTC", "Z", "+0200", "-05:30": but not "+02".
+[[nodiscard]] bool is_offset(std::string_view text);
+
+// A time zone of the IANA data base, with its summer time. Private to io.
+
+class LogZone {
+ public:
+  /// Throws Error: input, at `where`, for a name that the system's data base hasn't got; io if there is none.
+  LogZone(const std::string& name, const Where& where);
+  ~LogZone();
+
+  /// How much local time is ahead of UTC then, seconds.
+  [[nodiscard]] std::int32_t offset_at(std::int64_t utc_us);
+  /// From begin to end.
+  [[nodiscard]] std::vector<LogOffset> offsets(std::int64_t begin_us, std::int64_t end_us);
+
+  enum class Kind {
+    unique,
+    ambiguous,  ///< clocks were put back: it was so late twice
+    missing     ///< clocks were put forward: it was never so late
+  };
+  struct Found {
+    std::int64_t utc_us;
+    std::int64_t later_us;  ///< of an ambiguous time: the second one
+    Kind kind;
+  };
+  /// A missing time is taken as that of a clock that wasn't put forward.
+  [[nodiscard]] Found utc_of(std::int64_t local_us);
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+// From a row's time stamp to a moment. Private to io.
+
+/// Which columns tell the time, and how.
+struct TimeColumns {
+  std::size_t first = 0;
+  std::vector<std::size_t> more{};  ///< what follows the first: a time of day, AM or PM, an offset
+  Stamp::Kind kind = Stamp::Kind::local;
+  double unit_us = 1e6;                             ///< of numbers
+  enum class Zero { epoch, own } zero = Zero::own;  ///< of numbers: what they count from
+  LogMap::Dates order = LogMap::Dates::found;
+
+  [[nodiscard]] std::size_t last() const { return more.empty() ? first : std::max(first, std::ranges::max(more)); }
+  [[nodiscard]] bool has(std::size_t column) const {
+    return column == first || std::ranges::find(more, column) != more.end();
+  }
+};
+
+/// What numbers of this size count, by the name of their column if they are small: seconds, milli-, micro- or
+/// nanoseconds, since 1970 or since something of the log's own.
+void set_unit(TimeColumns& columns, double typical, std::string_view name);
+
+class LogTimer {
+ public:
+  /// The zone, if there is one, outlives it.
+  LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s);
+
+  enum class Oddity { none, ambiguous, missing };
+  struct Read {
+    std::optional<std::int64_t> us;
+    std::string fault = {};  ///< why there is none
+    Oddity oddity = Oddity::none;
+  };
+  [[nodiscard]] Read read(std::span<const std::string_view> fields);
+  /// Of a text alone, as --from has it.
+  [[nodiscard]] Read read_text(std::string_view text);
+
+  [[nodiscard]] LogClock clock() const noexcept;
+  /// Of local time, from begin to end.
+  [[nodiscard]] std::vector<LogOffset> offsets(std::int64_t begin_us, std::int64_t end_us);
+
+ private:
+  [[nodiscard]] Read from(const Stamp& stamp);
+  [[nodiscard]] Read in_zone(std::int64_t local_us);
+  void note_offset(std::int64_t us, std::int32_t offset_s);
+
+  TimeColumns columns_;
+  LogZone* zone_;
+  std::int64_t shift_us_;
+  std::string joined_;
+  std::vector<LogOffset> seen_;                           ///< of stamps that tell theirs, where it changes
+  enum class Pass { first, second } pass_ = Pass::first;  ///< of an hour that there is twice
+  std::int64_t last_local_us_ = 0;
+};
+
+}  // namespace pirsim::io

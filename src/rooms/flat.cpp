@@ -1,0 +1,594 @@
+#include "rooms/flat.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "rooms/flat_layout.hpp"
+#include "rooms/floor_plan.hpp"
+
+// The floor of one room while it is furnished: what stands on it, and what must stay free to get there.
+
+namespace pirsim::dataset {
+
+/// In the axes of a Spot on the wall: the room is towards -Z, x to the right of who looks into the room.
+struct Piece {
+  Rectangle solid;
+  Rectangle kept;  ///< of no other solid; may overlap what others keep
+};
+
+class RoomFloor {
+ public:
+  explicit RoomFloor(const Rectangle& clear) : plan_(clear) {}
+
+  [[nodiscard]] const Rectangle& bounds() const noexcept { return plan_.bounds(); }
+  [[nodiscard]] const std::vector<Wall>& walls() const noexcept { return plan_.walls(); }
+  [[nodiscard]] bool fits(const Spot& spot, const Piece& piece) const;
+  void put(const Spot& spot, const Piece& piece);
+  void keep_free(const Rectangle& rectangle) { kept_.push_back(rectangle); }
+
+  /// Its back to a wall, often in a corner: half_m from its middle to its sides. None after some attempts. Puts it
+  /// there.
+  [[nodiscard]] std::optional<Spot> put_at_wall(const Piece& piece, double half_m, Stream& stream);
+  /// Anywhere, turned by quarters.
+  [[nodiscard]] std::optional<Spot> put_anywhere(const Piece& piece, Stream& stream);
+
+ private:
+  FloorPlan plan_;  ///< occupied by solids
+  std::vector<Rectangle> kept_;
+};
+
+namespace {
+
+constexpr int most_spots = 60;  // that are tried for one thing
+
+}  // namespace
+
+bool RoomFloor::fits(const Spot& spot, const Piece& piece) const {
+  const Rectangle solid = spot * piece.solid;
+  return plan_.is_free(solid) && plan_.is_free(spot * piece.kept) &&
+         std::ranges::none_of(kept_, [&](const Rectangle& kept) { return overlap(solid, kept); });
+}
+
+void RoomFloor::put(const Spot& spot, const Piece& piece) {
+  plan_.occupy(spot * piece.solid);
+  kept_.push_back(spot * piece.kept);
+}
+
+std::optional<Spot> RoomFloor::put_at_wall(const Piece& piece, double half_m, Stream& stream) {
+  for (int k = 0; k < most_spots; ++k) {
+    const Wall& wall = one_of(plan_.walls(), stream);
+    const double room = wall.length_m() - 2.0 * half_m;
+    const std::uint32_t where = stream.index(4);  // a quarter each in the corners
+    const double along = draw_length({0.0, std::max(0.0, room)}, stream);
+    if (room < 0.0) continue;
+    const Spot spot = wall.facing_room(half_m + (where == 0 ? 0.0 : where == 1 ? room : along));
+    if (!fits(spot, piece)) continue;
+    put(spot, piece);
+    return spot;
+  }
+  return std::nullopt;
+}
+
+std::optional<Spot> RoomFloor::put_anywhere(const Piece& piece, Stream& stream) {
+  const Rectangle& b = bounds();
+  for (int k = 0; k < most_spots; ++k) {
+    const double x = draw_length({b.lower.x, b.upper.x}, stream), z = draw_length({b.lower.y, b.upper.y}, stream);
+    const Spot spot{{x, z}, static_cast<int>(stream.index(2))};
+    if (!fits(spot, piece)) continue;
+    put(spot, piece);
+    return spot;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+using Kind = FlatRoomKind;
+
+class FlatFurnisher {
+ public:
+  FlatFurnisher(const FlatSpec& spec, int residents, FlatPlan plan, Stream& stream)
+      : spec_(spec), plan_(std::move(plan)), stream_(stream) {
+    flat_.residents = residents;
+    flat_.width_m = plan_.bounds.upper.x;
+    flat_.depth_m = -plan_.bounds.lower.y;
+    flat_.height_m = draw_length(spec.height_m, stream_);
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i) floors_.emplace_back(plan_.clear_floor(i));
+    for (const Doorway& door : plan_.doorways) keep_doorway_free(door);
+  }
+
+  std::variant<FurnishedFlat, NoPlace> furnish() {
+    build_shell(plan_, flat_.height_m, flat_.scene);
+    add_beds();
+    for (std::size_t i = 0; i < plan_.rooms.size() && lacking_.empty(); ++i) furnish_room(i);
+    const SensorsAt at = one_of(spec_.sensors_at, stream_);
+    if (at == SensorsAt::doorways) {
+      hang_at_doorways(spec_, plan_, stream_, flat_.scene);
+    } else {
+      hang_in_rooms(spec_, plan_, flat_.height_m, stream_, flat_.scene);
+    }
+    if (!lacking_.empty()) return NoPlace{lacking_};
+    flat_.rooms = plan_.rooms;
+    return FurnishedFlat{std::move(flat_), std::move(demands_)};
+  }
+
+ private:
+  // Sizes are `assumed`: common furniture, as in the shipped flat; the ranges that were looked at stand behind.
+  static constexpr double off_wall_m = 0.02;
+  static constexpr double kept_free_at_door_m = 1.0;                 // 0.9-1.2, on both sides
+  static constexpr double bed_length_m = 2.05, bed_height_m = 0.48;  // 2.0-2.1, 0.45-0.5
+  static constexpr double pelvis_from_wall_m = 1.03;  // of who lies: the head of the largest person has room
+  static constexpr double beside_bed_m = 0.7;         // 0.6-0.8: to get in
+  static constexpr double sofa_depth_m = 0.9, sofa_height_m = 0.42;  // 0.85-1.0, 0.40-0.45
+  static constexpr double pelvis_above_seat_m = 0.09;
+  static constexpr double table_depth_m = 0.8, chair_from_table_m = 0.25, chair_spacing_m = 0.7, chair_zone_m = 0.9;
+  static constexpr double hip_height_m = 0.53;
+  static constexpr double counter_depth_m = 0.6, stand_from_counter_m = 0.37;  // 0.3-0.5
+  static constexpr double knees_m = 0.45, back_m = 0.2;  // of sitters, from the pelvis: no leaf turns there
+  static constexpr double desk_depth_m = 0.7;            // 0.6-0.8
+
+  static constexpr std::size_t least_places = 8;  // half a square metre: what a sensor must see at least
+
+  enum class Wanted { always, if_it_fits };
+
+  void fail(const std::string& reason) {
+    if (lacking_.empty()) lacking_ = reason;
+  }
+
+  void keep_doorway_free(const Doorway& door) {
+    const Vec2 across{0.5 * doorway_m * door.direction.y, 0.5 * doorway_m * door.direction.x};
+    const auto keep = [&](std::size_t room, const Vec2& towards) {
+      const Vec2 far = door.middle + kept_free_at_door_m * towards;
+      floors_[room].keep_free({glm::min(glm::min(door.middle + across, door.middle - across), far - glm::abs(across)),
+                               glm::max(glm::max(door.middle + across, door.middle - across), far + glm::abs(across))});
+    };
+    keep(door.into, door.direction);
+    if (door.from) keep(*door.from, -door.direction);
+  }
+
+  // -- things --------------------------------------------------------------------------------------------------------
+
+  void add(const std::string& name, const Spot& spot, std::span<const BoxPart> parts) {
+    flat_.scene.meshes.push_back(boxes(name, spot, parts));
+  }
+  void add(const std::string& name, const Spot& spot, const std::vector<BoxPart>& parts) {
+    add(name, spot, std::span(parts));
+  }
+
+  /// Faces into the room (0 quarters) or the wall (2).
+  void add_seat(const std::string& id, const Spot& spot, const Vec2& own, int quarters, double height,
+                std::vector<std::string> uses) {
+    const Spot seat{spot * own, spot.quarters + quarters};
+    flat_.scene.seats.push_back({id, seat.frame(height), std::move(uses)});
+  }
+  void add_place(const std::string& id, PlacePosture posture, const Spot& spot, const Vec2& own, int quarters,
+                 double height, std::vector<std::string> uses) {
+    const Spot place{spot * own, spot.quarters + quarters};
+    flat_.scene.places.push_back({id, posture, place.frame(height), std::move(uses)});
+  }
+
+  // -- beds ----------------------------------------------------------------------------------------------------------
+
+  /// Two who share one get a wide one, in the first room that has none; the others are shared out.
+  void add_beds() {
+    std::vector<std::size_t> rooms;
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i)
+      if (plan_.rooms[i].kind == Kind::bedroom) rooms.push_back(i);
+    if (rooms.empty()) rooms.push_back(0);
+    std::size_t next = 0;
+    for (int left = flat_.residents; left > 0 && lacking_.empty();) {
+      const bool is_wide = stream_.uniform() < spec_.double_beds;
+      const int sleepers =
+          is_wide && left >= 2 && left > static_cast<int>(rooms.size() - next % rooms.size()) - 1 ? 2 : 1;
+      add_bed(floors_[rooms[next++ % rooms.size()]], is_wide, sleepers);
+      left -= sleepers;
+    }
+  }
+
+  void add_bed(RoomFloor& floor, bool is_wide, int sleepers) {
+    const double half = 0.5 * draw_length(is_wide ? Range{1.4, 1.8} : Range{0.9, 1.0}, stream_);
+    const double end = -off_wall_m - bed_length_m;
+    const Rectangle solid{{-half, end}, {half, -off_wall_m}};
+    // One alone gets in at the right: x is mirrored by turns.
+    const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
+    const double left = sleepers == 2 || side < 0.0 ? -half - beside_bed_m : -half;
+    const double right = sleepers == 2 || side > 0.0 ? half + beside_bed_m : half;
+    // Two get to both sides round the foot.
+    const double foot = sleepers == 2 ? end - beside_bed_m : end;
+    const Piece piece{solid, {{left, foot}, {right, -off_wall_m}}};
+    const auto spot = floor.put_at_wall(piece, half + off_wall_m, stream_);
+    if (!spot) return fail("there was no place for a bed");
+    const std::string number = std::to_string(++beds_);
+    add("bed " + number, *spot, {{solid, 0.0, bed_height_m}});
+    const double x = is_wide ? 0.5 * half : 0.0;
+    for (int k = 0; k < sleepers; ++k) {
+      const double at = sleepers == 1 ? side * x : k == 0 ? -x : x;
+      const std::string id = "bed_" + number + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
+      add_place(id, PlacePosture::lie, *spot, {at, -pelvis_from_wall_m}, 0, bed_height_m, {"sleep"});
+      if (sleepers == 2) demands_.shared_beds.push_back(id);
+    }
+  }
+
+  // -- rooms ---------------------------------------------------------------------------------------------------------
+
+  void furnish_room(std::size_t index) {
+    RoomFloor& floor = floors_[index];
+    const auto has = [&](Kind kind) {
+      return std::ranges::find(plan_.rooms, kind, &FlatRoom::kind) != plan_.rooms.end();
+    };
+    switch (plan_.rooms[index].kind) {
+      case Kind::living_room:
+        if (!has(Kind::kitchen)) add_kitchen(floor);
+        add_sofa(floor);
+        add_table(floor);
+        if (!has(Kind::bedroom)) add_wardrobe(floor);
+        return add_shelf(floor);
+      case Kind::kitchen:
+        return add_kitchen(floor);
+      case Kind::bedroom:
+        add_wardrobe(floor);
+        if (!has(Kind::study) && stream_.index(2) == 0) add_desk(floor, Wanted::if_it_fits);
+        return;
+      case Kind::study:
+        add_desk(floor, Wanted::always);
+        return add_shelf(floor);
+      case Kind::bath:
+        return add_bath(floor);
+      case Kind::corridor:
+        return;
+    }
+  }
+
+  /// Seats side by side, and a television opposite where there is room for it.
+  void add_sofa(RoomFloor& floor) {
+    const int seats = 2 + static_cast<int>(stream_.index(2));
+    const double half = 0.5 * (0.8 * seats + 0.3);
+    const Rectangle solid{{-half, -sofa_depth_m}, {half, -off_wall_m}};
+    const Rectangle with_sitters{{-half, -0.55 - knees_m}, {half, -off_wall_m}};
+    const auto spot =
+        floor.put_at_wall({with_sitters, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a sofa");
+    add("sofa", *spot, {{solid, 0.0, sofa_height_m}});
+    add("sofa back", *spot, {{{{-half, -off_wall_m - 0.2}, {half, -off_wall_m}}, sofa_height_m, 0.85}});
+    for (int k = 0; k < seats; ++k)
+      add_seat("sofa_" + std::to_string(k + 1), *spot, {0.8 * (k + 0.5 - 0.5 * seats), -0.55}, 0,
+               sofa_height_m + pelvis_above_seat_m, {"tv", "rest", "read"});
+    add_television(floor, *spot);
+  }
+
+  void add_television(RoomFloor& floor, const Spot& sofa) {
+    const Rectangle& b = floor.bounds();
+    const Vec2 straight = sofa * Vec2(0.0, -1.0) - sofa.origin;
+    const double far = straight.x != 0.0 ? b.upper.x - b.lower.x : b.upper.y - b.lower.y;
+    const Spot opposite{sofa.origin + far * straight, sofa.quarters + 2};
+    const Piece piece{{{-0.7, -0.4}, {0.7, -off_wall_m}}, {{-0.7, -0.4}, {0.7, -off_wall_m}}};
+    if (!floor.fits(opposite, piece)) return;
+    floor.put(opposite, piece);
+    add("television", opposite, {{piece.solid, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
+  }
+
+  /// Chairs for the residents and a guest, two at least, on its long sides.
+  void add_table(RoomFloor& floor) {
+    const int across = std::max(1, (flat_.residents + 2) / 2);
+    const double half = 0.5 * (chair_spacing_m * across + 0.1), deep = 0.5 * table_depth_m;
+    const Rectangle solid{{-half, -deep}, {half, deep}};
+    const double sitters = deep + chair_from_table_m + back_m;
+    const auto spot = floor.put_anywhere(
+        {{{-half, -sitters}, {half, sitters}}, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}}, stream_);
+    if (!spot) return fail("there was no place for a table");
+    std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
+    for (const double x : {-half + 0.08, half - 0.08})
+      parts.push_back({{{x - 0.03, -0.03}, {x + 0.03, 0.03}}, 0.0, 0.71});
+    add("table", *spot, parts);
+    for (int k = 0; k < 2 * across; ++k) {
+      const double x = (k / 2 + 0.5 - 0.5 * across) * chair_spacing_m, side = k % 2 == 0 ? 1.0 : -1.0;
+      add_seat("table_" + std::to_string(k + 1), *spot, {x, side * (deep + chair_from_table_m)}, k % 2 == 0 ? 0 : 2,
+               hip_height_m, {"eat", "play", "work"});
+    }
+  }
+
+  /// A counter with sink, stove and, at one end, a fridge.
+  void add_kitchen(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({2.4, 3.2}, stream_), front = -off_wall_m - counter_depth_m;
+    const Rectangle solid{{-half, front}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, front - 0.9}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a kitchen counter");
+    const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
+    const auto part = [&](double a, double b) {
+      return Rectangle{{std::min(side * a, side * b), front}, {std::max(side * a, side * b), -off_wall_m}};
+    };
+    add("counter", *spot, {{part(-half, half - 0.6), 0.0, 0.9}});
+    add("fridge", *spot, {{part(half - 0.6, half), 0.0, 1.8}});
+    const double length = 2.0 * half - 0.6;
+    const Vec2 stove(side * (-half + 0.28 * length), front - stand_from_counter_m);
+    const Vec2 sink(side * (-half + 0.75 * length), front - stand_from_counter_m);
+    add_place("stove", PlacePosture::stand, *spot, stove, 2, 0.0, {"cook"});
+    add_place("sink", PlacePosture::stand, *spot, sink, 2, 0.0, {"chores", "cook"});
+  }
+
+  void add_bath(RoomFloor& floor) {
+    const Rectangle shower{{-0.45, -0.9}, {0.45, 0.0}};
+    const auto tray = floor.put_at_wall({shower, {{-0.45, -1.4}, {0.45, 0.0}}}, 0.45, stream_);
+    if (!tray) return fail("there was no place for a shower");
+    add("shower tray", *tray, {{{{-0.44, -0.88}, {0.44, -off_wall_m}}, 0.0, 0.02}});
+    add_place("shower", PlacePosture::stand, *tray, {0.0, -0.45}, 0, 0.0, {"shower", "wash"});
+    const Rectangle bowl{{-0.2, -0.7}, {0.2, -off_wall_m}};
+    const auto toilet = floor.put_at_wall(
+        {{{-0.2, -0.48 - knees_m}, {0.2, -off_wall_m}}, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4, stream_);
+    if (!toilet) return fail("there was no place for a toilet");
+    add("toilet", *toilet, {{bowl, 0.0, 0.42}});
+    add_seat("toilet", *toilet, {0.0, -0.48}, 0, 0.42 + pelvis_above_seat_m, {"toilet"});
+    const Rectangle basin{{-0.3, -0.42}, {0.3, -off_wall_m}};
+    const auto sink = floor.put_at_wall({basin, {{-0.35, -1.1}, {0.35, -off_wall_m}}}, 0.35, stream_);
+    if (!sink) return fail("there was no place for a basin");
+    add("basin", *sink, {{basin, 0.7, 0.85}});
+    add_place("washbasin", PlacePosture::stand, *sink, {0.0, -0.78}, 2, 0.0, {"wash", "dress"});
+  }
+
+  void add_wardrobe(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({1.0, 1.8}, stream_);
+    const Rectangle solid{{-half, -0.62}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, -1.1}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a wardrobe");
+    add("wardrobe " + std::to_string(++wardrobes_), *spot, {{solid, 0.0, 2.0}});
+  }
+
+  void add_desk(RoomFloor& floor, Wanted wanted) {
+    const double half = 0.5 * draw_length({1.2, 1.6}, stream_), front = -off_wall_m - desk_depth_m;
+    const Rectangle solid{{-half, front}, {half, -off_wall_m}};
+    const Rectangle with_sitter{{-half, front - 0.28 - back_m}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({with_sitter, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half, stream_);
+    if (!spot && wanted == Wanted::always) return fail("there was no place for a desk");
+    if (!spot) return;
+    const std::string number = std::to_string(++desks_);
+    std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
+    for (const double x : {0.05 - half, half - 0.05})
+      parts.push_back({{{x - 0.02, front + 0.02}, {x + 0.02, -off_wall_m - 0.02}}, 0.0, 0.71});
+    add("desk " + number, *spot, parts);
+    add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
+  }
+
+  /// Where it fits.
+  void add_shelf(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({0.8, 1.6}, stream_);
+    const double height = one_of(std::vector<double>{0.8, 1.2, 2.0}, stream_);
+    const Rectangle solid{{-half, -0.35}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, -0.8}, {half, -off_wall_m}}}, half, stream_);
+    if (spot) add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+  }
+
+  const FlatSpec& spec_;
+  FlatPlan plan_;
+  Stream& stream_;
+  DrawnFlat flat_;
+  Demands demands_{{}, least_places};
+  std::vector<RoomFloor> floors_;  ///< (rooms)
+  std::string lacking_;
+  int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
+};
+
+}  // namespace
+
+std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream) {
+  auto plan = lay_out(spec, residents, stream);
+  if (auto* lacking = std::get_if<NoPlace>(&plan)) return *lacking;
+  return FlatFurnisher(spec, residents, std::get<FlatPlan>(std::move(plan)), stream).furnish();
+}
+
+namespace {
+
+constexpr double sensor_off_wall_m = 0.05;
+constexpr double above_doorway_m = 0.1;    // 0.05-0.2
+constexpr double doorway_tilt_deg = 75.0;  // 60-85: the strip before the door, not the room behind
+
+Quat looking(const Vec2& direction, double tilt_rad) {
+  return rotation_from_heading(heading_of(direction)) * glm::angleAxis(-tilt_rad, Vec3(1, 0, 0));
+}
+
+SensorSpec& add_sensor(const FlatSpec& spec, SensorsAt at, Mount mount, const std::string& name, Stream& stream,
+                       SceneSpec& scene) {
+  SensorSpec& sensor = scene.sensors.emplace_back();
+  sensor.id = name;
+  sensor.model = one_of(models_of(spec, at, mount), stream);
+  return sensor;
+}
+
+/// Whether something as high as the sensor hides the corner: a wardrobe.
+bool is_behind_furniture(const Vec2& corner, const std::vector<Rectangle>& tall) {
+  constexpr double near_m = 0.3;
+  return std::ranges::any_of(tall, [&](const Rectangle& r) {
+    return overlap(r, {corner - Vec2(near_m), corner + Vec2(near_m)});
+  });
+}
+
+/// Of meshes that aren't walls.
+std::vector<Rectangle> tall_furniture(const SceneSpec& scene, double height_m) {
+  std::vector<Rectangle> tall;
+  for (const TriMesh& mesh : scene.meshes) {
+    Rectangle r{Vec2(1e9), Vec2(-1e9)};
+    double top = 0.0;
+    for (const Vec3& p : mesh.positions) {
+      r = {{std::min(r.lower.x, p.x), std::min(r.lower.y, p.z)}, {std::max(r.upper.x, p.x), std::max(r.upper.y, p.z)}};
+      top = std::max(top, p.y);
+    }
+    constexpr double short_of_ceiling_m = 0.1;
+    if (top > 1.5 && top < height_m - short_of_ceiling_m) tall.push_back(r);
+  }
+  return tall;
+}
+
+}  // namespace
+
+const std::vector<std::string>& models_of(const FlatSpec& spec, SensorsAt at, Mount mount) {
+  static const std::vector<std::string> ceiling{"EKMC1601111"}, corner{"EKMC1604111"}, doorway{"AMN33111"};
+  if (!spec.models.empty()) return spec.models;
+  if (at == SensorsAt::doorways) return doorway;
+  return mount == Mount::ceiling ? ceiling : corner;
+}
+
+void hang_in_rooms(const FlatSpec& spec, const FlatPlan& plan, double height_m, Stream& stream, SceneSpec& scene) {
+  const Mount mount = one_of(spec.mounts, stream);
+  const std::vector<Rectangle> tall = tall_furniture(scene, height_m);
+  for (std::size_t i = 0; i < plan.rooms.size(); ++i) {
+    SensorSpec& sensor = add_sensor(spec, SensorsAt::rooms, mount, room_sensor_name(plan.rooms[i].id), stream, scene);
+    sensor.area = plan.rooms[i].id;
+    const Rectangle r = plan.clear_floor(i);
+    const Vec2 centre = 0.5 * (r.lower + r.upper);
+    if (mount == Mount::ceiling) {
+      const double turn = radians(5.0 * stream.index(72));
+      sensor.world_from_sensor = {rotation_from_heading(turn) * glm::angleAxis(-0.5 * pi, Vec3(1, 0, 0)),
+                                  Vec3(centre.x, height_m - 0.01, centre.y)};
+      continue;
+    }
+    const double high = std::min(draw_length(spec.sensor_height_m, stream), height_m - sensor_off_wall_m);
+    const double tilt = radians(std::round(draw(spec.sensor_tilt_deg, stream)));
+    Vec2 corner{0.0};
+    for (std::uint32_t k = 0, first = stream.index(4); k < 4; ++k) {
+      const std::uint32_t which = (first + k) % 4;
+      corner = {(which & 1) != 0 ? r.upper.x - sensor_off_wall_m : r.lower.x + sensor_off_wall_m,
+                (which & 2) != 0 ? r.upper.y - sensor_off_wall_m : r.lower.y + sensor_off_wall_m};
+      if (!is_behind_furniture(corner, tall)) break;
+    }
+    sensor.world_from_sensor = {looking(centre - corner, tilt), Vec3(corner.x, high, corner.y)};
+  }
+}
+
+void hang_at_doorways(const FlatSpec& spec, const FlatPlan& plan, Stream& stream, SceneSpec& scene) {
+  for (const Doorway& door : plan.doorways) {
+    const std::string name = doorway_sensor_name(door.from ? plan.rooms[door.into].id : front_door_name);
+    SensorSpec& sensor = add_sensor(spec, SensorsAt::doorways, Mount::wall, name, stream, scene);
+    // Nobody hangs one outside of the front door.
+    const Vec2 towards = door.from ? -door.direction : door.direction;
+    sensor.area = plan.rooms[door.from.value_or(door.into)].id;
+    const Vec2 place = door.middle + ((door.from ? 0.5 * flat_wall_m : 0.0) + sensor_off_wall_m) * towards;
+    sensor.world_from_sensor = {looking(towards, radians(doorway_tilt_deg)),
+                                Vec3(place.x, doorway_height_m + above_doorway_m, place.y)};
+  }
+}
+
+namespace {
+
+constexpr double leaf_m = doorway_m - 0.02;
+
+/// A wall seen from above, along x or along z, with gaps from its lower end on.
+struct Straight {
+  Rectangle area;
+  bool is_along_x = true;
+};
+
+class Shell {
+ public:
+  Shell(const FlatPlan& plan, double height_m, SceneSpec& scene) : plan_(plan), height_m_(height_m), scene_(scene) {}
+
+  void build() {
+    const Rectangle& b = plan_.bounds;
+    scene_.floor = FloorArea({outline(b)}, 0.0);
+    scene_.meshes.push_back(floor_mesh({b}));
+    for (const FlatRoom& room : plan_.rooms) scene_.areas.push_back({room.id, FloorArea({outline(room.area)}, 0.0)});
+    constexpr double w = flat_wall_m, half = 0.5 * flat_wall_m;
+    add_box("ceiling", {b.lower - Vec2(w), b.upper + Vec2(w)}, height_m_, height_m_ + w);
+    add_wall({{{b.lower.x - w, b.upper.y}, {b.upper.x + w, b.upper.y + w}}, true});
+    add_wall({{{b.lower.x - w, b.lower.y - w}, {b.upper.x + w, b.lower.y}}, true});
+    add_wall({{{b.lower.x - w, b.lower.y}, {b.lower.x, b.upper.y}}, false});
+    add_wall({{{b.upper.x, b.lower.y}, {b.upper.x + w, b.upper.y}}, false});
+    for (const InnerWall& wall : plan_.inner_walls) {
+      const bool is_along_x = wall.from.y == wall.to.y;
+      const Vec2 thick = is_along_x ? Vec2(0.0, half) : Vec2(half, 0.0);
+      add_wall({{wall.from - thick, wall.to + thick}, is_along_x});
+    }
+    for (const Doorway& door : plan_.doorways) add_door(door);
+  }
+
+ private:
+  /// Counter-clockwise seen from above.
+  static std::vector<Vec2> outline(const Rectangle& r) {
+    return {{r.lower.x, r.upper.y}, r.upper, {r.upper.x, r.lower.y}, r.lower};
+  }
+
+  void add_box(const std::string& name, const Rectangle& area, double from_y, double to_y) {
+    const std::array parts{BoxPart{area, from_y, to_y}};
+    scene_.meshes.push_back(boxes(name, {}, parts));
+  }
+
+  /// In pieces beside and above its doorways.
+  void add_wall(const Straight& wall) {
+    const std::string name = "wall " + std::to_string(++n_walls_);
+    const auto along = [&](const Vec2& p) { return wall.is_along_x ? p.x : p.y; };
+    const auto piece = [&](double from, double to) {
+      return wall.is_along_x ? Rectangle{{from, wall.area.lower.y}, {to, wall.area.upper.y}}
+                             : Rectangle{{wall.area.lower.x, from}, {wall.area.upper.x, to}};
+    };
+    std::vector<double> gaps;
+    for (const Doorway& door : plan_.doorways) {
+      constexpr double touch_m = 1e-6;
+      const Vec2 m = door.middle;
+      const Rectangle& a = wall.area;
+      const bool is_in = m.x > a.lower.x - touch_m && m.x < a.upper.x + touch_m && m.y > a.lower.y - touch_m &&
+                         m.y < a.upper.y + touch_m && (door.direction.x == 0.0) == wall.is_along_x;
+      if (is_in) gaps.push_back(along(m));
+    }
+    std::ranges::sort(gaps);
+    double from = along(wall.area.lower);
+    for (const double gap : gaps) {
+      add_box(name, piece(from, gap - 0.5 * doorway_m), 0.0, height_m_);
+      from = gap + 0.5 * doorway_m;
+      add_box(name + " above a doorway", piece(gap - 0.5 * doorway_m, from), doorway_height_m, height_m_);
+    }
+    add_box(name, piece(from, along(wall.area.upper)), 0.0, height_m_);
+  }
+
+  void add_door(const Doorway& door) {
+    const Frame frame{rotation_from_heading(heading_of(door.direction)), Vec3(door.middle.x, 0.0, door.middle.y)};
+    if (!door.from) scene_.entrances.push_back({"entrance", frame, doorway_m, 1.5});
+    if (!door.leaf) return;
+    DoorSpec leaf;
+    leaf.id = door.from ? plan_.rooms[door.into].id : front_door_name;
+    leaf.world_from_door = frame;
+    leaf.width_m = leaf_m;
+    leaf.hinge = door.hinge;
+    leaf.state = *door.leaf;
+    scene_.doors.push_back(leaf);
+  }
+
+  const FlatPlan& plan_;
+  double height_m_;
+  SceneSpec& scene_;
+  int n_walls_ = 0;
+};
+
+}  // namespace
+
+void build_shell(const FlatPlan& plan, double height_m, SceneSpec& scene) { Shell(plan, height_m, scene).build(); }
+
+DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
+  const auto which = static_cast<std::uint32_t>(number);
+  // Drawn once: who is refused for lack of space stays.
+  Stream people({seed, which, 0, Purpose::flat_household});
+  const int residents = draw(spec.residents, people);
+  ModelFinder models({{spec.models, spec.models_where}}, spec.where, options);
+  Failures failures;
+  for (int tries = 1; tries <= most_tries; ++tries) {
+    Stream stream({seed, which, static_cast<std::uint32_t>(tries), Purpose::flat});
+    auto drawn = furnish_flat(spec, residents, stream);
+    if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
+      failures.add(lacking->reason);
+      continue;
+    }
+    auto& [flat, demands] = std::get<FurnishedFlat>(drawn);
+    flat.number = number;
+    flat.tries = tries;
+    flat.scene.name = "flat " + std::to_string(number);
+    models.add_to(flat.scene);
+    const std::string fault = fault_of(flat.scene, demands);
+    if (fault.empty()) return std::move(flat);
+    failures.add(fault);
+  }
+  failures.give_up("flat", number, spec.where);
+}
+
+}  // namespace pirsim::dataset

@@ -1,0 +1,410 @@
+#include "surveys/sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <optional>
+#include <ranges>
+#include <sstream>
+#include <utility>
+
+#include "engine/body/motion.hpp"
+#include "engine/body/seating.hpp"
+#include "engine/sim/compiled_study.hpp"
+#include "engine/sim/natural_motion.hpp"
+#include "engine/sim/observer.hpp"
+#include "engine/sim/plan_people.hpp"
+#include "engine/sim/run_state.hpp"
+#include "model/core/error.hpp"
+#include "model/core/parallel.hpp"
+#include "model/geom/floor.hpp"
+#include "model/schema/actions.hpp"
+#include "model/schema/check_scene.hpp"
+
+// A zone, or a cluster of zones, is on or off. Where legs and trunk fill a cluster for as long as somebody sits, arms
+// that move in it change nothing: the sensor sees the sitter and is deaf to the work. So that one rule serves every
+// response, nothing is concluded from zones: somebody works in the seat, and the detectors tell.
+
+namespace pirsim::studies {
+namespace {
+
+// Acts of natural style come at random, 22 shifts and fidgets in a quarter of an hour. The metronome's work repeats:
+// three tilts of the trunk, half a minute each.
+constexpr int natural_work_s = 900, choreographed_work_s = 300;
+constexpr double reach_s = 5.0;  // assumed: longer than the hands take to the table, which isn't asked about
+constexpr std::size_t most_seats = 30, most_pairs = 600;  // of seats and sensors: some ten seconds of one core
+constexpr std::size_t most_remembered = 1024;             // the metronome's work has some 600 postures
+
+/// The worker's body, tick by tick, as in a run.
+class Body {
+ public:
+  Body(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid, const body::SeatPlace& place)
+      : work_(worker.work),
+        activity_(facts_of(worker.work).activity),
+        motion_(seated(humanoid, place, room.array.tick_s())),
+        restlessness_(worker.person.changes, room.seed, 0, 0, room.array.tick_s()),
+        tilt_ticks_(std::max<std::int64_t>(1, std::llround(work_.tilt_every_s / room.array.tick_s()))) {
+    const bool is_natural = worker.person.style == MotionStyle::natural;
+    if (is_natural) natural_.emplace(room.seed, 0, 0, room.sensing.tick_rate_hz);
+    motion_.work({is_natural ? 0.0 : work_.arm_amplitude_m, work_.arm_period_s});
+  }
+
+  void advance() {
+    const std::vector<double>& tilts_deg = work_.tilt_choices_deg;
+    if (natural_) {
+      natural_->tick(motion_, activity_, {});
+    } else if (!tilts_deg.empty() && tick_ % tilt_ticks_ == 0) {
+      motion_.tilt_spine(radians(tilts_deg[static_cast<std::size_t>(tick_ / tilt_ticks_) % tilts_deg.size()]));
+    }
+    if (restlessness_.acts()) restlessness_.tick(motion_, natural_ ? nullptr : &work_);
+    motion_.advance();
+    ++tick_;
+  }
+  [[nodiscard]] body::Outline outline() const noexcept { return motion_.outline(); }
+
+ private:
+  action::Work work_;
+  std::optional<Activity> activity_;
+  body::Motion motion_;
+  std::optional<sim::NaturalMotion> natural_;
+  sim::Restlessness restlessness_;
+  std::int64_t tilt_ticks_, tick_ = 0;
+};
+
+/// What the optics show of one body's postures, with those that it was in before.
+class View {
+ public:
+  View(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid)
+      : room_(room),
+        humanoid_(humanoid),
+        radiance_(sim::radiance_of(worker.person.warmth, room.sensing.ambient_c)),
+        observer_(room.array, room.tracer, sim::ZonesOf::all_sensors) {
+    known_.make_room_for(1);
+  }
+
+  /// Valid until the next call.
+  const sim::Exposure& of(const body::Outline& outline) {
+    if (const auto number = known_.find(0, 0, outline); number != 0) return exposures_[number - 1];
+    if (exposures_.size() == most_remembered) {
+      known_.forget_all();
+      exposures_.clear();
+    }
+    known_.remember(0);
+    exposures_.push_back(room_.array.unexposed());
+    observer_.look(mannequin_.pose(humanoid_, outline), radiance_, exposures_.back());
+    return exposures_.back();
+  }
+
+ private:
+  const WatchedRoom& room_;
+  const body::Humanoid& humanoid_;
+  sim::BodyRadiance radiance_;
+  sim::Observer observer_;
+  sim::Mannequin mannequin_;
+  sim::PostureIndex known_;
+  std::vector<sim::Exposure> exposures_;
+};
+
+/// Channels that saw the body at some tick, and at every tick.
+class Coverage {
+ public:
+  explicit Coverage(const ZoneSet& channels) : ever_(channels), always_(channels) {}
+
+  void add(const ZoneSet& channels) noexcept {
+    ever_.add(channels.words());
+    for (std::size_t i = 0; i < always_.words().size(); ++i) always_.words()[i] &= channels.words()[i];
+  }
+  /// Of the channels [begin, end).
+  void count(std::size_t begin, std::size_t end, WorkNotice& notice) const noexcept {
+    for (std::size_t i = begin; i < end; ++i) {
+      notice.channels += ever_.test(i) ? 1 : 0;
+      notice.for_good += always_.test(i) ? 1 : 0;
+    }
+  }
+
+ private:
+  ZoneSet ever_, always_;
+};
+
+/// A sensor's channels; of soft edges the first copy, which is the zone as it is with hard edges.
+std::pair<std::size_t, std::size_t> channels_of(const WatchedRoom& room, std::size_t sensor) {
+  const RayBundle& rays = room.array.rated();
+  std::size_t begin = rays.sensor_clusters_begin[sensor], end = rays.sensor_clusters_begin[sensor + 1];
+  if (room.sensing.change_per == ChangePer::beam) {
+    begin = rays.cluster_zones_begin[begin];
+    end = rays.cluster_zones_begin[end];
+  }
+  return {begin, begin + (end - begin) / room.array.n_levels()};
+}
+
+/// (n_sensors)
+std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int work_s, const body::Humanoid& humanoid,
+                              const body::SeatPlace& place) {
+  Body body(room, worker, humanoid, place);
+  const int rate = room.sensing.tick_rate_hz;
+  for (int tick = 0; tick < reach_s * rate; ++tick) body.advance();
+  View view(room, worker, humanoid);
+  body::Outline outline = body.outline();
+  sim::Exposure before = view.of(outline), after = before;
+  Coverage coverage(before.channels);
+  sim::Detector detector(room.array);
+  detector.begin_run(room.seed, 0, before);
+  std::vector<std::uint8_t> triggers(room.array.n_sensors()), noticed(room.array.n_sensors());
+  std::vector<WorkNotice> notices(room.array.n_sensors());
+  for (int second = 0; second < work_s; ++second) {
+    std::ranges::fill(noticed, std::uint8_t{0});
+    for (int tick = 0; tick < rate; ++tick) {
+      body.advance();
+      if (const body::Outline now = body.outline(); now == outline) {
+        detector.tick_unchanged(after, triggers);
+      } else {
+        outline = now;
+        std::swap(before, after);
+        after = view.of(outline);
+        coverage.add(after.channels);
+        detector.tick(before, after, triggers);
+      }
+      for (std::size_t i = 0; i < triggers.size(); ++i) noticed[i] |= triggers[i];
+    }
+    for (std::size_t i = 0; i < noticed.size(); ++i) notices[i].seconds += noticed[i];
+  }
+  for (std::size_t i = 0; i < notices.size(); ++i) {
+    const auto [begin, end] = channels_of(room, i);
+    coverage.count(begin, end, notices[i]);
+  }
+  return notices;
+}
+
+}  // namespace
+
+Worker usual_worker() {
+  Worker worker;
+  worker.person.style = MotionStyle::natural;
+  return worker;
+}
+
+Worker worker_of(std::span<const sim::TrialModel> trials) {
+  for (const sim::TrialModel& trial : trials) {
+    for (const sim::PersonModel& person : trial.people) {
+      for (const ScriptedAction& action : person.spec.actions) {
+        const auto* work = std::get_if<action::Work>(&action.what);
+        if (work == nullptr) continue;
+        Worker worker{person.spec, *work};
+        worker.person.body_meshes.clear();
+        return worker;
+      }
+    }
+  }
+  return usual_worker();
+}
+
+WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads, SeatsTried tried) {
+  const body::Humanoid humanoid(worker.person);
+  const double floor_y = room.scene.floor.height_m();
+  const std::vector<SeatSpec>& seats = room.scene.seats;
+  WorkReport report;
+  report.seconds = worker.person.style == MotionStyle::natural ? natural_work_s : choreographed_work_s;
+  std::vector<body::SeatPlace> places;
+  const std::size_t most =
+      tried == SeatsTried::all
+          ? seats.size()
+          : std::clamp<std::size_t>(most_pairs / std::max<std::size_t>(1, room.scene.sensors.size()), 1, most_seats);
+  for (std::size_t i = 0, n = std::min(seats.size(), most); i < n; ++i) {
+    const SeatSpec& seat = seats[i * seats.size() / n];
+    const body::SeatPlace place{seat.world_from_seat, floor_y, sim::table_height(seat, floor_y, room.array.room())};
+    if (body::unfit_height(humanoid, place)) continue;
+    report.seats.push_back(seat.id);
+    places.push_back(place);
+  }
+  ordered_parallel<std::vector<WorkNotice>>(
+      places.size(), threads, [&](std::size_t i) { return watch(room, worker, report.seconds, humanoid, places[i]); },
+      [&](std::vector<WorkNotice>& of_seat) {
+        report.notices.insert(report.notices.end(), of_seat.begin(), of_seat.end());
+      });
+  return report;
+}
+
+body::Motion seated(const body::Humanoid& humanoid, const body::SeatPlace& place, double tick_s) {
+  const double heading = heading_of(place.world_from_seat);
+  const Vec2 stand =
+      floor_point(place.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
+  body::Motion motion(humanoid, stand, heading, place.floor_height_m, tick_s);
+  motion.sit_down(place);
+  while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
+  return motion;
+}
+
+}  // namespace pirsim::studies
+
+namespace pirsim {
+
+SeatsAtWork WorkReport::by_any() const {
+  SeatsAtWork result;
+  const std::size_t n_sensors = seats.empty() ? 0 : notices.size() / seats.size();
+  for (std::size_t i = 0; i < seats.size(); ++i) {
+    const std::span of_seat = std::span(notices).subspan(i * n_sensors, n_sensors);
+    const bool noticed = std::ranges::any_of(of_seat, [](const WorkNotice& notice) { return notice.seconds > 0; });
+    const bool deaf = !noticed && std::ranges::any_of(of_seat, &WorkNotice::is_deaf);
+    (noticed ? result.noticed : deaf ? result.deaf : result.unseen).push_back(seats[i]);
+    if (std::ranges::any_of(of_seat, &WorkNotice::is_sure)) result.surely.push_back(seats[i]);
+  }
+  return result;
+}
+
+std::vector<std::string> WorkReport::deaf_seats(std::size_t sensor) const {
+  std::vector<std::string> deaf;
+  for (std::size_t i = 0; i < seats.size(); ++i) {
+    if (notice(i, sensor).is_deaf()) deaf.push_back(seats[i]);
+  }
+  return deaf;
+}
+
+}  // namespace pirsim
+
+namespace pirsim::studies {
+namespace {
+
+constexpr double beside_m = 0.5;  // assumed: a sensor on the far side of a wall isn't nearer (tried 0.3-1)
+constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thinner, and nobody comes so near
+
+/// Traces single postures and tells which sensors have an active zone.
+class Onlooker {
+ public:
+  Onlooker(const Model& model, const body::Humanoid& humanoid)
+      : rays_(model.compiled().array().rated()),
+        humanoid_(humanoid),
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {}
+
+  /// (n_sensors) whether the sensor sees the posture.
+  std::vector<bool> sensors_that_see(const body::Posture& posture) {
+    std::vector<PosedShape> solids;
+    for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
+    ZoneSet zones(rays_.n_zones());
+    tracer_->add(0, solids, zones);
+    std::vector<bool> seen;
+    for (std::size_t sensor = 0; sensor < rays_.n_sensors(); ++sensor) {
+      const auto first = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor]];
+      const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
+      seen.push_back(std::ranges::any_of(std::views::iota(first, last), [&](auto zone) { return zones.test(zone); }));
+    }
+    return seen;
+  }
+
+ private:
+  const RayBundle& rays_;
+  const body::Humanoid& humanoid_;
+  std::unique_ptr<rt::Tracer> tracer_;
+};
+
+body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
+  try {
+    return seated(humanoid, {seat.world_from_seat, model.scene().floor.height_m(), std::nullopt}, model.tick_s())
+        .posture();
+  } catch (const Error& fault) {  // the body knows no names
+    throw Error(fault.code(), Where{model.scene().name}, "seat '" + seat.id + "': " + fault.issues().front().message);
+  }
+}
+
+void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
+  const RayBundle& rated = model.compiled().array().rated();
+  const RayBundle& clipped = model.rays();
+  const auto ray_of_cluster = [&](std::uint32_t cluster) {
+    return rated.zone_rays_begin[rated.cluster_zones_begin[cluster]];
+  };
+  const auto first = ray_of_cluster(rated.sensor_clusters_begin[sensor]);
+  const auto last = ray_of_cluster(rated.sensor_clusters_begin[sensor + 1]);
+  sight.rays = last - first;
+  for (auto ray = first; ray < last; ++ray) {
+    if (clipped.range[ray] < rated.range[ray]) ++sight.rays_cut;
+    sight.longest_m = std::max(sight.longest_m, static_cast<double>(clipped.range[ray]));
+  }
+}
+
+}  // namespace
+
+SightReport look_around(const Model& model) {
+  const SceneSpec& scene = model.compiled().scene();
+  const auto& people = model.compiled().trials().front().people;
+  const body::Humanoid humanoid(people.empty() ? PersonInForce{} : people.front().spec);
+  const body::WalkableFloor floor(scene.floor, {}, scene.meshes, humanoid.clearance_radius_m());
+  Onlooker onlooker(model, humanoid);
+
+  SightReport report;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    SensorSight& sight = report.sensors.emplace_back();
+    sight.sensor = scene.sensors[i].id;
+    sight.outside = hangs_outside(scene.floor, scene.sensors[i].world_from_sensor.origin);
+    count_rays(model, i, sight);
+  }
+  const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
+  for (double z = lower.y + report.spacing_m / 2; z < upper.y; z += report.spacing_m) {
+    for (double x = lower.x + report.spacing_m / 2; x < upper.x; x += report.spacing_m) {
+      if (!scene.floor.contains({x, z}) || !floor.walkable({x, z})) continue;
+      const body::Motion standing(humanoid, {x, z}, 0.0, scene.floor.height_m(), model.tick_s());
+      const std::vector<bool> seen = onlooker.sensors_that_see(standing.posture());
+      ++report.places;
+      if (std::ranges::find(seen, true) != seen.end()) ++report.places_seen_by_any;
+      for (std::size_t i = 0; i < seen.size(); ++i) report.sensors[i].places += seen[i] ? 1 : 0;
+    }
+  }
+  for (const SeatSpec& seat : scene.seats) {
+    const std::vector<bool> seen = onlooker.sensors_that_see(seated_posture(model, humanoid, seat));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i]) report.sensors[i].seats.push_back(seat.id);
+    }
+  }
+  return report;
+}
+
+std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
+  const Vec2 below = floor_point(place);
+  const double away_m = distance_to_edge_m(floor, below);
+  if (floor.contains(below) || away_m <= beside_m) return {};
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << away_m;
+  return "it hangs outside of the room, " + text.str() + " m from the floor's edge";
+}
+
+namespace {
+
+/// Was the scene told to be in another unit than metres? Then that is why.
+bool is_told_of_unit(const SceneSpec& scene) {
+  const auto doubt = doubt_of_unit(scene);
+  return doubt &&
+         std::ranges::any_of(scene.warnings, [&](const Issue& told) { return told.message.ends_with(*doubt); });
+}
+
+void note_blind(const SensorSight& sight, const std::string& scene, GroupedWarnings& warnings) {
+  const std::string name = "sensor '" + sight.sensor + "'", blind = name + " can see NOBODY: ";
+  if (!sight.outside.empty()) return warnings.add("outside", {scene, 0, 0}, name, blind + sight.outside);
+  if (sight.rays > 0 && sight.longest_m < buried_m) {
+    return warnings.add("buried", {scene, 0, 0}, name,
+                        blind + "all of its rays end within " +
+                            std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
+                            " cm (is it inside a wall, or right before one?)");
+  }
+  warnings.add("astray", {scene, 0, 0}, name,
+               blind +
+                   "no zone reaches a standing or seated person anywhere on the floor area (does it look at a "
+                   "wall, along -Z of its node?)");
+}
+
+}  // namespace
+
+std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
+  if (is_told_of_unit(scene)) return {};
+  GroupedWarnings blind;
+  for (const SensorSight& sight : report.sensors) {
+    if (sight.sees_nothing()) note_blind(sight, scene.name, blind);
+  }
+  Diagnostics remarks;
+  blind.tell(remarks);
+  const auto cut = [](const SensorSight& sight) { return sight.rays_cut > 0; };
+  if (!report.sensors.empty() && std::ranges::none_of(report.sensors, cut)) {
+    remarks.warning({scene.name, 0, 0},
+                    "no ray of any sensor ends at the room: without walls sensors see people outside, too");
+  }
+  return remarks.issues();
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,434 @@
+// Rooms weighed by a log: statistics by hand, the check's level, what moves, hours of days, the recipe that is made.
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "logs/calibrate.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/error.hpp"
+#include "support/catch.hpp"
+#include "support/log_files.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::calibrate;
+using counting::Stretch;
+
+namespace {
+
+/// A room whose sensors report motion with so much probability per person; somebody comes and goes.
+PoolRoom room_of(std::mt19937& random, int number, double lively, int days = 2, int readings = 400) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  PoolRoom room{{number, {}}, {{"liveliness", lively}}};
+  for (int d = 0; d < days; ++d) {
+    Stretch day{2, {}};
+    int people = 0;
+    for (int i = 0; i < readings; ++i) {
+      if (uniform(random) < 0.03) people = static_cast<int>(random() % 3);
+      day.people.push_back(people);
+      for (int k = 0; k < 2; ++k) day.motion.push_back(uniform(random) < 1.0 - std::exp(-lively * people) ? 1 : 0);
+    }
+    room.labelled.days.push_back(std::move(day));
+  }
+  return room;
+}
+
+std::vector<PoolRoom> pool_of(std::mt19937& random, int n) {
+  std::uniform_real_distribution<double> uniform(0.1, 0.5);
+  std::vector<PoolRoom> pool;
+  for (int r = 1; r <= n; ++r) pool.push_back(room_of(random, r, uniform(random)));
+  return pool;
+}
+
+std::vector<Stretch> unlabelled(std::vector<Stretch> days) {
+  for (Stretch& day : days) day.people.clear();
+  return days;
+}
+
+double statistic(const std::vector<double>& values, const std::string& name) {
+  const auto infos = statistics_of(2);
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].name == name) return values[i];
+  }
+  throw std::runtime_error("no statistic " + name);
+}
+
+}  // namespace
+
+TEST_CASE("Statistics of motion are what one counts by hand") {
+  // 30-s readings: 40 quiet ones, then ten times (two with motion at both, two at the first alone, four without).
+  Stretch day{2, std::vector<std::uint8_t>(80, 0)};
+  for (int i = 0; i < 10; ++i)
+    for (const int bit : {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0})
+      day.motion.push_back(static_cast<std::uint8_t>(bit));
+  const auto days = motion_statistics(std::vector{day}, 30.0);
+  REQUIRE(days.size() == 1);
+  const auto* found = days.data();
+  const double active = 76.0;  // from the first to the last with motion: the last four are quiet
+  CHECK(statistic(*found, "readings with motion, busiest sensor") == Approx(40 / active));
+  CHECK(statistic(*found, "readings with motion, quietest sensor") == Approx(20 / active));
+  CHECK(statistic(*found, "readings with motion, any sensor") == Approx(40 / active));
+  CHECK(statistic(*found, "mean run with motion") == Approx(std::log(4.0)));
+  CHECK(statistic(*found, "mean run without") == Approx(std::log(4.0)));
+  CHECK(statistic(*found, "from first to last motion") == Approx(active * 30 / 3600));
+  CHECK(statistic(*found, "first motion after the hours begin") == Approx(40 * 30 / 3600.0));
+  CHECK(statistic(*found, "pauses longer than 10 min") == 0.0);
+  CHECK(statistic(*found, "5 min without motion") == 0.0);
+  CHECK(told(statistics_of(2)[2], std::log(4.0), 30.0) == Approx(2.0));  // min
+  // phi of (n = 76; a = 40, b = 20, both = 20)
+  CHECK(statistic(*found, "likeness of first and last sensor") ==
+        Approx((76.0 * 20 - 40.0 * 20) / std::sqrt(40.0 * 36 * 20 * 56)));
+  Stretch quiet{2, std::vector<std::uint8_t>(200, 0)};
+  CHECK(motion_statistics(std::vector{quiet}, 30.0).empty());
+}
+
+TEST_CASE("The check calls one in twenty of its own rooms unlike, and finds one that isn't one of them") {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  constexpr int attempts = 400;
+  constexpr std::size_t rooms = 59;  // and the one that is asked for: p comes in steps of 1/60
+  int called = 0, found = 0;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    stats::Matrix<double> rows(rooms, 3);
+    std::vector<double> one(3);
+    const auto fill = [&](std::span<double> row) {
+      row[0] = normal(random);
+      row[1] = row[0] + 0.5 * normal(random);
+      row[2] = std::exp(normal(random));
+    };
+    for (std::size_t r = 0; r < rooms; ++r) fill(rows.row(r));
+    fill(one);
+    if (unlike_share(rows, one) <= 0.05) ++called;
+    one[1] = one[0] + 3.0;  // each entry alone is nothing unusual
+    if (unlike_share(rows, one) <= 0.05) ++found;
+  }
+  // Exactly 3 of 60 on average: 20 of 400, with a standard error of 4.4.
+  CHECK(std::abs(called - 20) < 4 * 4.4);
+  CHECK(found > attempts / 2);  // the twin
+}
+
+TEST_CASE("Weighted means, quantiles and ranks") {
+  const std::vector<double> values{3, 1, 2, 5}, weights{1, 1, 2, 0};
+  CHECK(weighted_mean(values, weights) == Approx(2.0));
+  CHECK(weighted_sd(values, weights) == Approx(std::sqrt(0.5)));
+  CHECK(weighted_interval(values, weights) == Interval{1, 3});
+  CHECK(rank_correlation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{1, 8, 27, 64}) == Approx(1.0));
+  CHECK(rank_correlation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{4, 3, 2, 1}) == Approx(-1.0));
+  CHECK(rank_correlation(std::vector<double>{1, 1, 2, 2}, std::vector<double>{1, 2, 1, 2}) == Approx(0.0));
+}
+
+TEST_CASE(
+    "Readings that a score counts reach from half an hour before the first person to half an hour after the last") {
+  std::vector<int> people(300, 0);
+  people[100] = 1;
+  people[150] = 2;
+  const std::vector<bool> counts = in_use(people, 30.0);
+  CHECK_FALSE(counts[39]);
+  CHECK(counts[40]);
+  CHECK(counts[210]);
+  CHECK_FALSE(counts[211]);
+  CHECK(std::ranges::none_of(in_use(std::vector<int>(10, 0), 30.0), [](bool b) { return b; }));
+}
+
+TEST_CASE("A calibration finds the liveliness that the log comes from, and its error holds for rooms of the recipe") {
+  std::mt19937 random(2);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  const PoolRoom real = room_of(random, 99, 0.45);
+  counting::Settings settings;
+  settings.modes = 1;  // as these rooms are made
+  settings.shrinkage = 10.0;
+  const Calibration made =
+      Pool(pool, settings).calibrate(unlabelled(real.labelled.days), unlabelled(real.labelled.days));
+  CHECK(made.verdict == Verdict::like_these);
+  REQUIRE(made.parameters.size() == 1);
+  CHECK(made.parameters[0].mean_after > made.parameters[0].mean_before + 0.05);
+  CHECK(made.parameters[0].narrowed > 0.2);
+  CHECK(made.effective_rooms < 40.0);
+  REQUIRE(made.counter.expected_error);
+  CHECK(made.counter.expected_error->low < made.mean_error);
+  CHECK(made.mean_error < made.counter.expected_error->high);
+  // A quiet log moves the other way: the twin.
+  const PoolRoom other = room_of(random, 98, 0.12);
+  const Calibration quiet =
+      Pool(pool, settings).calibrate(unlabelled(other.labelled.days), unlabelled(other.labelled.days));
+  CHECK(quiet.parameters[0].mean_after < quiet.parameters[0].mean_before - 0.05);
+}
+
+TEST_CASE("The error to expect of a room is that of a counter of the others, weighed by its own log") {
+  std::mt19937 random(5);
+  const std::vector<PoolRoom> pool = pool_of(random, 12);
+  std::vector<counting::LabelledRoom> rooms;
+  for (const PoolRoom& room : pool) rooms.push_back(room.labelled);
+  const counting::Counter counter = counting::train(rooms, {});
+  const RoomErrors errors = errors_of_rooms(counter, rooms, 2);
+  for (std::size_t own = 0; own < rooms.size(); ++own) {
+    counting::Counter others = counter;
+    others.rooms.erase(others.rooms.begin() + static_cast<std::ptrdiff_t>(own));
+    const std::vector<Stretch> log = unlabelled(rooms[own].days);
+    const auto error = [&] {
+      double sum = 0.0, n = 0.0;
+      for (std::size_t d = 0; d < log.size(); ++d) {
+        const counting::Estimates estimates = counting::estimate(others, log[d], counting::Pass::forward);
+        const std::vector<int>& people = rooms[own].days[d].people;
+        const std::vector<bool> counts = in_use(people, 30.0);
+        for (std::size_t i = 0; i < people.size(); ++i) {
+          if (!counts[i]) continue;
+          sum += std::abs(estimates.count(i) - people[i]);
+          n += 1.0;
+        }
+      }
+      return sum / n;
+    };
+    for (counting::RoomModel& room : others.rooms) room.weight = 1.0 / static_cast<double>(others.rooms.size());
+    CHECK(errors.alike[own].value() == Approx(error()).epsilon(1e-9));
+    counting::weigh(others, counting::log_likelihoods(others, log));
+    CHECK(errors.weighed[own].value() == Approx(error()).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("A log of one day is compared with one day of each room, not with the mean of more") {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(0.1, 0.5);
+  std::vector<PoolRoom> pool;
+  for (int r = 1; r <= 15; ++r) pool.push_back(room_of(random, r, uniform(random), 4));
+  const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3, 4).labelled.days);
+  const std::size_t n_statistics = statistics_of(2).size();
+  for (const std::size_t n_days : {std::size_t{1}, std::size_t{2}}) {
+    const auto mean = [&](const std::vector<Stretch>& days) {
+      const auto each = motion_statistics(std::span(days).first(n_days), 30.0);
+      REQUIRE(each.size() == n_days);
+      std::vector<double> sum(n_statistics, 0.0);
+      for (const auto& day : each) {
+        for (std::size_t s = 0; s < n_statistics; ++s) sum[s] += day[s] / static_cast<double>(n_days);
+      }
+      return sum;
+    };
+    stats::Matrix<double> rows(pool.size(), n_statistics);
+    for (std::size_t r = 0; r < pool.size(); ++r) std::ranges::copy(mean(pool[r].labelled.days), rows.row(r).begin());
+    const auto part = std::span(log).first(n_days);
+    CHECK(Pool(pool).calibrate(part, part).p == Approx(unlike_share(rows, mean(log))).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("A calibration doesn't depend on threads, nor on counts that the log hasn't got") {
+  std::mt19937 random(3);
+  const std::vector<PoolRoom> pool = pool_of(random, 12);
+  const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  std::vector<Stretch> unknown = log;
+  for (Stretch& day : unknown) day.people.assign(day.n_readings(), counting::unknown_count);
+  const Calibration one = Pool(pool, {}, 1).calibrate(log, log), more = Pool(pool, {}, 3).calibrate(log, log),
+                    told = Pool(pool).calibrate(unknown, unknown);
+  for (std::size_t r = 0; r < pool.size(); ++r) {
+    CHECK(one.rooms[r].weight == more.rooms[r].weight);
+    CHECK(one.rooms[r].error == more.rooms[r].error);
+    CHECK(one.rooms[r].weight == told.rooms[r].weight);
+  }
+}
+
+TEST_CASE("A log that no room makes is told, with what is outside, and a log without motion tells too little") {
+  std::mt19937 random(4);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  for (Stretch& day : log) {
+    for (std::size_t i = 1; i < day.motion.size(); i += 2) day.motion[i] = 0;  // the second sensor died
+  }
+  const Calibration died = Pool(pool).calibrate(log, log);
+  CHECK(died.verdict == Verdict::none_like_it);
+  CHECK_THAT(finding(died), contains("quietest sensor"));
+  for (Stretch& day : log) std::ranges::fill(day.motion, std::uint8_t{0});
+  CHECK(Pool(pool).calibrate(log, log).verdict == Verdict::too_little_told);
+  CHECK_THROWS_AS(Pool({pool.begin(), pool.begin() + 9}), Error);
+}
+
+TEST_CASE("Of a log the hours that the recipe simulates are compared, each day of its own") {
+  LogRows rows;
+  rows.sensors = {"a"};
+  rows.window_s = 3600.0;
+  rows.clock = LogClock::zoned;
+  for (int hour = 0; hour < 48; ++hour) {  // from 22:00 UTC on, two hours ahead: local midnight
+    rows.begin.push_back({(std::int64_t{22} + hour) * 3'600'000'000, 7200});
+    rows.motion.push_back(static_cast<std::uint8_t>(hour % 24 >= 7 && hour % 24 < 9 ? 1 : 0));
+  }
+  const LogDays days = days_of(rows, {7.0, 10.0});
+  const std::vector<Stretch>& parts = days.whole;
+  REQUIRE(parts.size() == 2);
+  CHECK(parts[0].motion == std::vector<std::uint8_t>{1, 1, 0});
+  CHECK(parts[1].motion == std::vector<std::uint8_t>{1, 1, 0});
+  CHECK(whole_log(rows).n_readings() == 48);
+  // Of a day that has only some of the hours nothing is compared.
+  const LogDays nights = days_of(rows, {-4.0, 10.0});
+  CHECK(nights.whole.empty());
+  CHECK(nights.partial == std::vector<std::string>{"1970-01-02", "1970-01-03"});
+  CHECK(days.partial.empty());
+  CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, {"2026-03-02"}}), contains("no verdict"));
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, {}}) == "2 days, from 7:00 to 10:00");
+  CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, {"2026-03-02"}}) ==
+        "1 of 2 days, from 7:00 to 10:00: on 2026-03-02 a sensor is known for less than nine tenths of these hours");
+}
+
+TEST_CASE("A day of which a sensor is known for less than nine tenths isn't compared") {
+  LogRows rows;
+  rows.sensors = {"a", "b"};
+  rows.window_s = 360.0;  // ten an hour
+  for (int i = 0; i < 3 * 240; ++i) {
+    rows.begin.push_back({i * std::int64_t{360'000'000}, 0});
+    const int day = i / 240, reading = i % 240 - 80;                 // after 8:00
+    rows.motion.push_back(reading < 0 ? counting::unknown_bit : 0);  // other hours don't count
+    rows.motion.push_back(reading >= 0 && reading < (day == 1 ? 3 : 2) ? counting::unknown_bit : 0);
+  }
+  const LogDays days = days_of(rows, {8.0, 10.0});  // twenty readings, of which two or three are unknown
+  CHECK(days.whole.size() == 2);
+  CHECK(days.partial == std::vector<std::string>{"1970-01-02"});
+  rows.clock = LogClock::elapsed;  // then all of it counts, and a third is unknown
+  CHECK(days_of(rows, {8.0, 10.0}).whole.empty());
+}
+
+TEST_CASE("A counter refuses a log that it isn't for, and tells of sensors that hold motion for another time") {
+  std::mt19937 random(8);
+  const PoolRoom room = room_of(random, 1, 0.3);
+  counting::Counter counter = counting::train(std::vector{room.labelled}, {});
+  LogRows rows;
+  rows.sensors = {"desk", "hall"};
+  rows.window_s = 30.0;
+  const Stretch& day = room.labelled.days[0];
+  rows.motion = day.motion;
+  for (std::size_t i = 0; i < day.n_readings(); ++i)
+    rows.begin.push_back({static_cast<std::int64_t>(i) * 30'000'000, 0});
+  LogTraits log{0.0, rows.sensors, {10.0, std::nullopt}};
+  const auto counts = [&] { return count_log(counter, rows, log, counting::Pass::forward); };
+  REQUIRE(counts().remarks.size() == 1);  // a counter of an older file takes any two
+  CHECK_THAT(counts().remarks[0], contains("it doesn't tell which sensors it is for"));
+  remember({0.0, {"hall", "desk"}, {10.0, 9.5}}, counter);
+  CHECK(counts().remarks.empty());
+  log.interval_s = 30.0;
+  CHECK(counts().remarks.empty());
+  log.interval_s = 300.0;
+  CHECK_THROWS_WITH(counts(), contains("a reading every 300 s") && contains("--step 300"));
+  log.interval_s = 0.0;
+  log.holds_s[0] = 90.0;
+  REQUIRE(counts().remarks.size() == 1);
+  CHECK_THAT(counts().remarks[0], contains("'desk' holds motion for 90.0 s in this log, and for 9.5 s"));
+  counter.sensors = {"hall", "door"};
+  CHECK_THROWS_WITH(counts(), contains("2 sensors (hall, door), and the log has 2: desk, hall") && contains("--map"));
+  log.sensors.clear();  // arrays have no names
+  log.holds_s.clear();
+  CHECK_NOTHROW(counts());
+  counter.n_sensors = 3;
+  CHECK_THROWS_AS(counts(), Error);
+}
+
+TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
+  LogCounts counts;
+  counts.rows.sensors = {"a"};
+  counts.rows.window_s = 1800.0;
+  counts.rows.clock = LogClock::elapsed;
+  counts.rows.people = {1, 1, 1};
+  counts.rows.motion = {1, counting::unknown_bit, 0};
+  for (int i = 0; i < 3; ++i) counts.rows.begin.push_back({i * std::int64_t{1'800'000'000}, 0});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  counts.estimates = {2, {0.1, 0.9, nan, nan, 1.0, 0.0}};
+  std::ostringstream text;
+  write_counts(text, counts);
+  CHECK(text.str() == "time_s,people,mean,p0,p1\n1800,1,0.90,0.100,0.900\n3600,,,,\n5400,0,0.00,1.000,0.000\n");
+  CHECK(how_sure(counts) ==
+        "Somebody is there for 0.5 h; the number is told with 80 % or more for 0.5 h of them. For 0.5 h nothing is "
+        "known, and no number is told.");
+  REQUIRE(error_of(counts));
+  CHECK(error_of(counts)->readings == 2);
+  CHECK(error_of(counts)->mean == Approx(0.5));
+  const TemporaryFolder folder;
+  write_counts_page(folder.path() / "page.html", counts, "log", "made by a test");
+  std::stringstream page;
+  page << std::ifstream(folder.path() / "page.html").rdbuf();
+  CHECK_THAT(page.str(), contains("\"n\":null") && contains("unknown, h"));
+}
+
+TEST_CASE("Counts say how far off they are, and for how long they are sure") {
+  LogCounts counts;
+  counts.rows.sensors = {"a"};
+  counts.rows.window_s = 1800.0;
+  counts.rows.people = {0, 2, log_state::unknown_count, 1};
+  for (int i = 0; i < 4; ++i) counts.rows.begin.push_back({i * std::int64_t{1'800'000'000}, 0});
+  counts.estimates = {3,
+                      {0.9, 0.1, 0.0,  //
+                       0.1, 0.8, 0.1,  //
+                       0.0, 0.5, 0.5,  //
+                       0.1, 0.3, 0.6}};
+  const auto error = error_of(counts);  // of 0, 1, (1), 2
+  REQUIRE(error);
+  CHECK(error->mean == Approx(2.0 / 3.0));
+  CHECK(error->while_occupied == Approx(1.0));
+  CHECK(in_words(*error) == "wrong by 0.67 people on average, over 3 readings; by 1.00 over the 2 with somebody");
+  CHECK(how_sure(counts) == "Somebody is there for 1.5 h; the number is told with 80 % or more for 0.5 h of them.");
+  CHECK(counts.estimates.quantile(1, 0.05) == 0);
+  CHECK(counts.estimates.quantile(1, 0.95) == 2);
+  counts.estimates = {2, {1, 0, 1, 0, 1, 0, 1, 0}};
+  CHECK(how_sure(counts).empty());
+}
+
+namespace {
+
+/// Two sensors, each of which holds motion for a while and often sees more: every other pulse is longer.
+LogFacts facts_of_holds(double a_s, double b_s, double b_varies_s = 0.0) {
+  std::string text = "time,sensor,state\n";
+  const auto add = [&](int i, const std::string& sensor, double length_s) {
+    const double begin = 1000.0 * i, end = begin + length_s * (i % 2 == 0 ? 1.0 : 1.7);
+    text += std::to_string(begin) + ',' + sensor + ",on\n" + std::to_string(end) + ',' + sensor + ",off\n";
+  };
+  for (int i = 0; i < 40; ++i) {
+    add(i, "A", a_s);
+    add(i, "B", b_s + b_varies_s * i);
+  }
+  return facts_of(read_log_text(text));
+}
+
+}  // namespace
+
+TEST_CASE("Rooms have the hold that all of a log's sensors have, never a mean of two") {
+  const LogFacts mixed = facts_of_holds(10.0, 90.0);
+  CHECK(mixed.sensors[0].hold_s == 10.0);
+  CHECK(mixed.sensors[1].hold_s == 90.0);
+  try {
+    static_cast<void>(common_hold(mixed));
+    FAIL("a hold for both");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::input);
+    CHECK_THAT(error.what(), contains("A holds motion for 10 s; B holds motion for 90 s"));
+  }
+  CHECK(common_hold(facts_of_holds(10.0, 10.8)) == 10.0);
+  const LogFacts untold = facts_of_holds(90.0, 12.0, 3.0);  // of B's pulses none are alike
+  CHECK_FALSE(untold.sensors[1].hold_s);
+  CHECK_THROWS_AS(common_hold(untold), Error);
+  CHECK(common_hold(facts_of_holds(10.0, 12.0, 3.0)) == 10.0);
+  CHECK_FALSE(common_hold(facts_of(read_log_text("time,A,B\n1,0,1\n2,1,0\n3,0,0\n"))));
+}
+
+TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {
+  const TemporaryFolder folder;
+  const auto file =
+      folder.write("recipe.yaml",
+                   "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects:\n  - range_scale: {scale: [0.8, 1.2]}\n"
+                   "  - {pulse_stretching: {hold_s: [0.5, 3]}, chance: 0.5}\n");
+  const dataset::RecipeSpec recipe = dataset::read_recipe(file);
+  const dataset::RecipeSpec pool = dataset::with_overrides(recipe, pool_overrides(recipe, 30.0, 12.5));
+  CHECK(pool.sensing.ticks_per_window == 30 * pool.sensing.tick_rate_hz);
+  REQUIRE(pool.effects.size() == 2);
+  CHECK(pool.effects[1].parameters.at("hold_s").least == 12.5);
+  CHECK(pool.effects[1].chance == 1.0);
+  const auto plain = folder.write("plain.yaml", "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects: [range_scale]\n");
+  const dataset::RecipeSpec added = dataset::read_recipe(plain, pool_overrides(dataset::read_recipe(plain), 30.0, 2.0));
+  REQUIRE(added.effects.size() == 2);
+  CHECK(added.effects[1].name == "pulse_stretching");
+
+  // The recipe that draws by weight reads back, with the hold and without what only the pool needs.
+  Calibration calibration;
+  calibration.rooms = {{1, 0.0, 0.25, {}}, {2, 0.0, 0.75, {}}};
+  const auto weighted = folder.write("weighted.yaml", weighted_recipe(pool, calibration, folder.path()));
+  const dataset::RecipeSpec read = dataset::read_recipe(weighted);
+  REQUIRE(read.draw_by);
+  CHECK(read.draw_by->weights == std::vector<double>{0.25, 0.75});
+  CHECK(read.effects[1].parameters.at("hold_s").least == 12.5);
+  CHECK(read.sensing.ticks_per_window == read.sensing.tick_rate_hz);
+}

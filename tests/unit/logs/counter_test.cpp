@@ -1,0 +1,393 @@
+// Hidden Markov counters against sums over all paths, and against a room that is made of a known one.
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <random>
+
+#include "logs/counter.hpp"
+#include "pirsim/counting.hpp"
+#include "pirsim/error.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::counting;
+
+namespace {
+
+std::vector<double> random_rows(std::mt19937& random, std::size_t rows, std::size_t columns) {
+  std::uniform_real_distribution<double> uniform(0.05, 1.0);
+  std::vector<double> table(rows * columns);
+  for (double& value : table) value = uniform(random);
+  divide_rows(table, columns);
+  return table;
+}
+
+Counter random_counter(std::mt19937& random, int n_rooms, int n_sensors = 2) {
+  Counter counter;
+  counter.settings.modes = 2;
+  counter.n_sensors = n_sensors;
+  counter.n_counts = 2;
+  counter.moves = random_rows(random, 4, 4);
+  for (int r = 0; r < n_rooms; ++r)
+    counter.rooms.push_back({r + 1, 1.0 / n_rooms, random_rows(random, 1, 4),
+                             random_rows(random, 4, static_cast<std::size_t>(n_sensors) + 1)});
+  return counter;
+}
+
+Stretch random_stretch(std::mt19937& random, int readings, int sensors, int most_bit = 1) {
+  Stretch stretch{sensors, {}};
+  for (int i = 0; i < readings * sensors; ++i)
+    stretch.motion.push_back(static_cast<std::uint8_t>(random() % static_cast<unsigned>(most_bit + 1)));
+  return stretch;
+}
+
+/// Probability in a state of as many known sensors with motion as a reading has, by each way in which the unknown ones
+/// could have been.
+double seen(const Counter& counter, const RoomModel& room, const Stretch& stretch, std::size_t reading,
+            std::size_t state) {
+  const auto n = static_cast<std::size_t>(stretch.n_sensors);
+  double sum = 0.0, like_it = 1.0;  // choices of known sensors that are as many
+  int known = 0, told_active = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint8_t told = stretch.motion[reading * n + k];
+    known += told == unknown_bit ? 0 : 1;
+    told_active += told == 1 ? 1 : 0;
+  }
+  for (int i = 1; i <= told_active; ++i) like_it *= static_cast<double>(known - told_active + i) / i;
+  for (std::uint32_t all = 0; all < (1U << n); ++all) {  // bits of all sensors; as likely as others with as many set
+    int active = 0;
+    bool fits = true;
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto bit = static_cast<std::uint8_t>((all >> k) & 1U);
+      active += bit;
+      const std::uint8_t told = stretch.motion[reading * n + k];
+      fits = fits && (told == unknown_bit || told == bit);
+    }
+    double ways = 1.0;
+    for (int i = 1; i <= active; ++i) ways *= static_cast<double>(stretch.n_sensors - active + i) / i;
+    if (fits)
+      sum += room.emissions[state * static_cast<std::size_t>(counter.n_symbols()) + static_cast<std::size_t>(active)] /
+             ways;
+  }
+  return like_it * sum;
+}
+
+/// (readings x counts) and the likelihood, by summing over every path of states.
+struct AllPaths {
+  std::vector<double> counts;
+  double likelihood = 0.0;
+};
+AllPaths over_all_paths(const Counter& counter, const RoomModel& room, const Stretch& stretch) {
+  const std::size_t n = stretch.n_readings();
+  constexpr std::size_t states = 4;
+  AllPaths sums{std::vector<double>(n * 2, 0.0), 0.0};
+  std::vector<std::size_t> path(n, 0);
+  while (true) {
+    double p = room.first[path[0]];
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i > 0) p *= counter.moves[path[i - 1] * states + path[i]];
+      p *= seen(counter, room, stretch, i, path[i]);
+    }
+    sums.likelihood += p;
+    for (std::size_t i = 0; i < n; ++i) sums.counts[i * 2 + path[i] / 2] += p;
+    std::size_t i = 0;
+    while (i < n && ++path[i] == states) path[i++] = 0;
+    if (i == n) break;
+  }
+  for (double& value : sums.counts) value /= sums.likelihood;
+  return sums;
+}
+
+/// A room whose sensor reports motion with these probabilities, by count: two people come and go at random.
+LabelledRoom known_room(std::mt19937& random, int number, const std::vector<double>& motion, int days, int readings) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  LabelledRoom room{number, {}};
+  for (int d = 0; d < days; ++d) {
+    Stretch day{1, {}};
+    int people = 0;
+    for (int i = 0; i < readings; ++i) {
+      if (uniform(random) < 0.02) people = static_cast<int>(random() % motion.size());
+      day.people.push_back(people);
+      day.motion.push_back(uniform(random) < motion[static_cast<std::size_t>(people)] ? 1 : 0);
+    }
+    room.days.push_back(std::move(day));
+  }
+  return room;
+}
+
+double error_of(const Counter& counter, const LabelledRoom& room, Pass pass) {
+  double sum = 0.0, n = 0.0;
+  for (const Stretch& day : room.days) {
+    Stretch unlabelled = day;
+    unlabelled.people.clear();
+    const Estimates estimates = estimate(counter, unlabelled, pass);
+    for (std::size_t i = 0; i < day.people.size(); ++i, ++n) sum += std::abs(estimates.count(i) - day.people[i]);
+  }
+  return sum / n;
+}
+
+}  // namespace
+
+TEST_CASE("A counter's two passes give what a sum over every path of states gives, with unknown sensors too") {
+  std::mt19937 random(1);
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    const Counter counter = random_counter(random, 1);
+    const Stretch stretch = random_stretch(random, 5, 2, attempt % 2 == 0 ? 1 : 2);
+    const AllPaths all = over_all_paths(counter, counter.rooms[0], stretch);
+    const Estimates smoothed = estimate(counter, stretch, Pass::smoothed);
+    for (std::size_t i = 0; i < all.counts.size(); ++i)
+      CHECK(smoothed.probabilities[i] == Approx(all.counts[i]).epsilon(1e-10));
+    CHECK(log_likelihoods(counter, std::vector{stretch})[0] == Approx(std::log(all.likelihood)).epsilon(1e-10));
+    // A forward estimate of the last reading has nothing after it that it doesn't know.
+    const Estimates forward = estimate(counter, stretch, Pass::forward);
+    CHECK(forward.probabilities.back() == Approx(all.counts.back()).epsilon(1e-10));
+    for (std::size_t n = 1; n <= 5; ++n) {
+      Stretch part = stretch;
+      part.motion.resize(n * 2);
+      if (!forward.is_told(n - 1)) continue;  // nothing has been known yet
+      CHECK(forward.probabilities[2 * n - 1] == Approx(over_all_paths(counter, counter.rooms[0], part).counts.back()));
+    }
+  }
+}
+
+TEST_CASE("Counting live gives what counting forward gives, and rooms mix by weight") {
+  std::mt19937 random(2);
+  Counter counter = random_counter(random, 3);
+  counter.rooms[0].weight = 0.7;
+  counter.rooms[1].weight = 0.3;
+  counter.rooms[2].weight = 0.0;
+  const Stretch stretch = random_stretch(random, 40, 2, 2);
+  const Estimates forward = estimate(counter, stretch, Pass::forward);
+  LiveCount live(counter);
+  for (std::size_t i = 0; i < stretch.n_readings(); ++i) {
+    const std::vector<double> now = live.next(std::span(stretch.motion).subspan(2 * i, 2));
+    double mixed = 0.0;
+    for (const int r : {0, 1}) {
+      Counter alone = counter;
+      alone.rooms = {counter.rooms[static_cast<std::size_t>(r)]};
+      alone.rooms[0].weight = 1.0;
+      mixed += counter.rooms[static_cast<std::size_t>(r)].weight *
+               estimate(alone, stretch, Pass::forward).probabilities[2 * i];
+    }
+    CHECK(now[0] == Approx(mixed).epsilon(1e-12));
+    CHECK(now[1] == Approx(forward.probabilities[2 * i + 1]).epsilon(1e-12));
+  }
+  CHECK_THROWS_AS(live.next(std::vector<std::uint8_t>{1}), Error);
+}
+
+TEST_CASE("Nobody is counted where nothing has been known for five minutes, nor live") {
+  std::mt19937 random(10);
+  const Counter counter = random_counter(random, 2);
+  constexpr std::size_t n = 90;
+  Stretch stretch = random_stretch(random, n, 2);
+  const auto is_unknown = [](std::size_t i) { return i < 15 || (i >= 30 && i < 61) || (i >= 70 && i < 79); };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (is_unknown(i)) stretch.motion[2 * i] = stretch.motion[2 * i + 1] = unknown_bit;
+  }
+  const Estimates forward = estimate(counter, stretch, Pass::forward),
+                  smoothed = estimate(counter, stretch, Pass::smoothed);
+  LiveCount live(counter);
+  for (std::size_t i = 0; i < n; ++i) {
+    bool before = false, after = false;  // ten readings of 30 s are five minutes
+    for (std::size_t k = 0; k < n; ++k) {
+      before = before || (!is_unknown(k) && k <= i && i - k <= 10);
+      after = after || (!is_unknown(k) && k >= i && k - i <= 10);
+    }
+    INFO(i);
+    CHECK(forward.is_told(i) == before);
+    CHECK(smoothed.is_told(i) == (before || after));
+    CHECK((smoothed.count(i) == unknown_count) == !(before || after));
+    const std::vector<double> now = live.next(std::span(stretch.motion).subspan(2 * i, 2));
+    CHECK(std::isnan(now[0]) == !before);
+    if (before) CHECK(now[0] == Approx(forward.probabilities[2 * i]).epsilon(1e-12));
+  }
+  CHECK(smoothed.count(45) == unknown_count);  // in the middle of the longest, for both to be tried
+  CHECK_FALSE(forward.is_told(44));
+}
+
+TEST_CASE("A reading that is as good as impossible, again and again, leaves numbers and their sum 1") {
+  Counter counter;
+  counter.settings.modes = 1;
+  counter.n_counts = 2;
+  counter.moves = {1, 0, 0, 1};  // whoever is there stays
+  counter.rooms = {{1, 1.0, {0.5, 0.5}, {1.0 - 1e-100, 1e-100, 0.1, 0.9}}};
+  const Stretch busy{1, std::vector<std::uint8_t>(50, 1)};
+  const auto believed = [&](std::vector<double> first, std::size_t reading) {
+    counter.rooms[0].first = std::move(first);
+    return estimate(counter, busy, Pass::smoothed).probabilities[2 * reading + 1];
+  };
+  CHECK(believed({0.5, 0.5}, 0) == 1.0);
+  CHECK(believed({1.0, 0.0}, 0) == 0.0);  // nobody else was ever possible
+  CHECK(believed({1.0, 0.0}, 49) == 0.0);
+  // Moves that hardly ever happen, to what the motion then proves.
+  counter.moves = {1.0, 0.0, 1e-12, 1.0 - 1e-12};
+  CHECK(believed({1.0, 1e-300}, 0) == Approx(1.0));
+}
+
+TEST_CASE("Counts that a log knows are held to, and say more of a room than motion alone") {
+  std::mt19937 random(3);
+  const Counter counter = random_counter(random, 1);
+  Stretch stretch = random_stretch(random, 4, 2);
+  stretch.people = {unknown_count, 1, unknown_count, 0};
+  const Estimates estimates = estimate(counter, stretch, Pass::smoothed);
+  CHECK(estimates.probabilities[2 * 1 + 1] == Approx(1.0));
+  CHECK(estimates.probabilities[2 * 3 + 0] == Approx(1.0));
+  // P(motion, counts) is at most P(motion).
+  Stretch unlabelled = stretch;
+  unlabelled.people.clear();
+  CHECK(log_likelihoods(counter, std::vector{stretch})[0] < log_likelihoods(counter, std::vector{unlabelled})[0]);
+}
+
+TEST_CASE("Training finds the motion of rooms that are made of a known model, on any number of threads") {
+  std::mt19937 random(4);
+  const std::vector<double> quiet{0.02, 0.2, 0.4}, lively{0.05, 0.5, 0.85};
+  std::vector<LabelledRoom> rooms;
+  constexpr int days = 6, readings = 1500;
+  for (int r = 0; r < 4; ++r) rooms.push_back(known_room(random, r + 1, r % 2 == 0 ? quiet : lively, days, readings));
+  Settings settings;
+  settings.modes = 1;
+  settings.shrinkage = 1.0;
+  const Counter counter = train(rooms, settings, 1);
+  REQUIRE(counter.n_counts == 3);
+  for (std::size_t r = 0; r < 4; ++r) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      const double p = (r % 2 == 0 ? quiet : lively)[n];
+      // Some 3000 readings a count: the standard error is sqrt(p (1 - p) / 3000), five of them and the shrinkage.
+      const double allowed = 5.0 * std::sqrt(p * (1.0 - p) / 2000.0) + 1.0 / 2000.0;
+      CHECK(std::abs(counter.rooms[r].emissions[n * 2 + 1] - p) < allowed);
+      // The twin that must fail: the other kind of room.
+      const double other = (r % 2 == 0 ? lively : quiet)[n];
+      if (n > 0) CHECK(std::abs(counter.rooms[r].emissions[n * 2 + 1] - other) > allowed);
+    }
+  }
+  const Counter threads = train(rooms, settings, 3);
+  CHECK(threads.moves == counter.moves);
+  for (std::size_t r = 0; r < 4; ++r) CHECK(threads.rooms[r].emissions == counter.rooms[r].emissions);
+}
+
+TEST_CASE("A log's counts may jump as no simulated room's did: the log stays possible, and counts go on") {
+  std::mt19937 random(9);
+  std::vector<LabelledRoom> rooms{{1, {}}};
+  Stretch day{1, {}};
+  for (int i = 0; i < 400; ++i) {  // 0, 1, 2, 1, 0, ... people: never 0 and 2 next to each other
+    day.people.push_back(std::vector{0, 1, 2, 1}[static_cast<std::size_t>(i / 20 % 4)]);
+    day.motion.push_back(random() % 3 < static_cast<unsigned>(day.people.back()) ? 1 : 0);
+  }
+  rooms[0].days.push_back(day);
+  const Counter counter = train(rooms, {});
+  Stretch log{1, {0, 1, 0, 1}, {0, 2, 0, 2}};
+  CHECK(std::isfinite(log_likelihoods(counter, std::vector{log})[0]));
+  CHECK(estimate(counter, log, Pass::smoothed).count(3) == 2);
+}
+
+TEST_CASE("Modes are found where a count has several: they explain the motion better than one") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  LabelledRoom room{1, {}};
+  Stretch day{1, {}};
+  bool busy = false;
+  for (int i = 0; i < 6000; ++i) {  // one person, quiet or busy by turns of 50 readings on average; nobody at times
+    if (uniform(random) < 0.02) busy = !busy;
+    const bool there = i % 300 < 200;
+    day.people.push_back(there ? 1 : 0);
+    day.motion.push_back(there && uniform(random) < (busy ? 0.9 : 0.1) ? 1 : 0);
+  }
+  room.days.push_back(day);
+  Settings two, one;
+  two.modes = 2;
+  one.modes = 1;
+  const std::vector<LabelledRoom> rooms{room};
+  const Counter of_two = train(rooms, two), of_one = train(rooms, one);
+  const double gain = log_likelihoods(of_two, room.days)[0] - log_likelihoods(of_one, room.days)[0];
+  CHECK(gain > 500.0);  // of 4000 readings: knowing the mode is worth some 0.3 a reading (0.69 - 0.33)
+  // One person in the quieter and the busier mode.
+  CHECK(of_two.rooms[0].emissions[2 * 2 + 1] == Approx(0.1).margin(0.06));
+  CHECK(of_two.rooms[0].emissions[3 * 2 + 1] == Approx(0.9).margin(0.06));
+}
+
+TEST_CASE("A log weighs the rooms that are like it, and counting there gets better") {
+  std::mt19937 random(6);
+  const std::vector<double> quiet{0.01, 0.15, 0.3}, lively{0.05, 0.5, 0.9};
+  std::vector<LabelledRoom> rooms;
+  for (int r = 0; r < 8; ++r) rooms.push_back(known_room(random, r + 1, r % 2 == 0 ? quiet : lively, 2, 1000));
+  Counter counter = train(rooms, {});
+  const LabelledRoom real = known_room(random, 99, lively, 2, 1000);
+  std::vector<Stretch> log = real.days;
+  for (Stretch& day : log) day.people.clear();
+  const double alike = error_of(counter, real, Pass::forward);
+  weigh(counter, log_likelihoods(counter, log));
+  double lively_weight = 0.0, sum = 0.0;
+  for (const RoomModel& room : counter.rooms) {
+    sum += room.weight;
+    if (room.number % 2 == 0) lively_weight += room.weight;
+  }
+  CHECK(sum == Approx(1.0));
+  CHECK(lively_weight > 0.75);  // one in two by chance
+  CHECK(error_of(counter, real, Pass::forward) < alike);
+  CHECK(error_of(counter, real, Pass::smoothed) < error_of(counter, real, Pass::forward));
+}
+
+TEST_CASE("A counter is written and read back as it is, and what isn't one is refused in a line") {
+  std::mt19937 random(7);
+  const TemporaryFolder folder;
+  Counter counter = random_counter(random, 2);
+  counter.expected_error = Interval{0.25, 0.75};
+  write_counter(folder.path() / "counter.json", counter);
+  const Counter read = read_counter(folder.path() / "counter.json");
+  CHECK(read.moves == counter.moves);
+  CHECK(read.n_sensors == counter.n_sensors);
+  CHECK(read.n_counts == counter.n_counts);
+  CHECK(read.settings.modes == counter.settings.modes);
+  CHECK(read.rooms[1].emissions == counter.rooms[1].emissions);
+  CHECK(read.rooms[1].first == counter.rooms[1].first);
+  CHECK(read.expected_error == counter.expected_error);
+  CHECK(read.sensors.empty());  // as of older files
+  counter.sensors = {"hall", "desk"};
+  counter.holds_s = {12.5, std::nullopt};
+  write_counter(folder.path() / "named.json", counter);
+  const Counter named = read_counter(folder.path() / "named.json");
+  CHECK(named.sensors == counter.sensors);
+  CHECK(named.holds_s == counter.holds_s);
+  const auto refused = [&](Counter spoilt) {
+    write_counter(folder.path() / "spoilt.json", spoilt);
+    CHECK_THROWS_AS(read_counter(folder.path() / "spoilt.json"), Error);
+  };
+  Counter spoilt = counter;
+  spoilt.settings.step_s = 1e300;
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.moves[0] += 0.1;
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.rooms[0].emissions.pop_back();
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.rooms[0].weight = 2.0;
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.rooms[0].emissions = {5e-324, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.sensors = {"hall", "hall"};
+  refused(spoilt);
+  spoilt.sensors = {"hall"};
+  refused(spoilt);
+  spoilt = counter;
+  spoilt.holds_s = {-1.0, 2.0};
+  refused(spoilt);
+}
+
+TEST_CASE("Rooms that a counter can't learn from are refused") {
+  std::mt19937 random(8);
+  const LabelledRoom good = known_room(random, 1, {0.1, 0.5}, 1, 100);
+  LabelledRoom other = good, empty = good, without = good;
+  other.days[0].n_sensors = 2;
+  other.days[0].people.resize(50);
+  std::ranges::fill(empty.days[0].people, 0);
+  without.days.clear();
+  CHECK_THROWS_AS(train(std::vector<LabelledRoom>{}, {}), Error);
+  CHECK_THROWS_AS(train(std::vector{good, other}, {}), Error);
+  CHECK_THROWS_AS(train(std::vector{empty}, {}), Error);
+  CHECK_THROWS_AS(train(std::vector{good, without}, {}), Error);
+}
