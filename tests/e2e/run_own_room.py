@@ -166,7 +166,7 @@ class OwnRoom(unittest.TestCase):
         lines = [f"{(start + datetime.timedelta(seconds=30.6 * i)).isoformat(timespec='milliseconds')},{i // 7 % 2},{i % 11 // 10}"
                  for i in range(170)]
         log = self.write("slow.csv", "time,A,B\n" + "\n".join(lines) + "\n")
-        made, rows = self.with_pool("slow"), self.folder / "slow_rows.csv"
+        made, rows = self.folder / "slow", self.folder / "slow_rows.csv"
         self.calibrate(made, log=[log], code=0)
         self.assertEqual(json.loads((made / "counter.json").read_text())["step_s"], 31)
         run("log", log, "-o", rows, "-q")
