@@ -883,7 +883,7 @@ class MainJob(unittest.TestCase):
         effects = ("effects=[{soft_zone_edges: {sigma_deg: 1}}, {wall_reflection: {coefficient: 0.9, wall: wall left}},"
                    " missing_occluder]")
         args = ("--replicates", 1, "-q", "--set", "trials.for_each.seat=[S1, S6]", "--set", "sensing.tick_rate_hz=10",
-                "--set", effects)
+                "--set", "people.0.actions.3.work.duration_s=30", "--set", effects)
         direct = study(*args).stdout
         self.assertEqual(study(*args, "--tracer", "reference").stdout, direct)
         self.assertEqual(study(*args, "--tracer", "embree").stdout, direct)

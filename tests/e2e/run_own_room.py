@@ -6,8 +6,10 @@ Usage: run_own_room.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
 import csv
 import datetime
+import functools
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -60,6 +62,23 @@ class OwnRoom(unittest.TestCase):
     def calibrate(cls, out, *more, log=None, recipe=None, code=0):
         return run("calibrate", recipe or cls.recipe, "--log", *(log or cls.log), "-o", out, *more, code=code)
 
+    @classmethod
+    def with_pool(cls, name):
+        """A folder that has the rooms' days already, for another log of the same holds."""
+        return shutil.copytree(cls.made, cls.folder / name)
+
+    @classmethod
+    @functools.cache
+    def held(cls):
+        """Of a log whose pulses last 12 s each: folder, events, what is told."""
+        events = ["time,sensor,state"]
+        for minute in range(60):
+            for sensor, second in (("a", 0), ("b", 20)):
+                for s, state in ((second, "on"), (second + 12, "off")):
+                    events.append(f"2026-03-02T08:{minute:02d}:{s:02d},{sensor},{state}")
+        folder = cls.folder / "held"
+        return folder, events, cls.calibrate(folder, log=[cls.write("twelve.csv", "\n".join(events) + "\n")])[1]
+
     def same(self, folder):
         for name in MADE:
             self.assertEqual((folder / name).read_bytes(), (self.made / name).read_bytes(), name)
@@ -101,13 +120,7 @@ class OwnRoom(unittest.TestCase):
         self.assertNotIn(first, [path.read_bytes() for path in (self.made / "pool" / "rows").rglob("*.csv.gz")])
 
     def test_the_hold_of_an_event_log_is_that_of_the_rooms(self):
-        events = ["time,sensor,state"]
-        for minute in range(60):  # each pulse lasts 12 s
-            for sensor, second in (("a", 0), ("b", 20)):
-                events.append(f"2026-03-02T08:{minute:02d}:{second:02d},{sensor},on")
-                events.append(f"2026-03-02T08:{minute:02d}:{second + 12:02d},{sensor},off")
-        held = self.folder / "held"
-        _, told = self.calibrate(held, log=[self.write("events.csv", "\n".join(events) + "\n")])
+        held, _, told = self.held()
         self.assertIn("hold motion for 12.0 s", told)
         holds = {row["value"] for row in table(held / "pool" / "effects.csv")
                  if row["parameter"] == "hold_s"}
@@ -126,7 +139,7 @@ class OwnRoom(unittest.TestCase):
     def test_days_that_are_not_compared_are_told_before_the_work(self):
         lines = self.log[0].read_text().splitlines(keepends=True)
         late = self.write("late.csv", lines[0] + "".join(lines[len(lines) // 2:]))
-        made = self.folder / "late"
+        made = self.with_pool("late")
         told = self.calibrate(made, log=[late])[1]
         self.assertRegex(told, r"of the log are compared none of 1 day, .*no verdict(.|\n)*wrote .*datapackage.json")
         numbers = json.loads((made / "calibration.json").read_text())
@@ -181,13 +194,7 @@ class OwnRoom(unittest.TestCase):
         self.assertIn("How many people were there?", page.read_text())
 
     def test_through_a_gap_nobody_is_counted_and_another_hold_is_told(self):
-        events = ["time,sensor,state"]
-        for minute in range(60):  # each pulse lasts 12 s
-            for sensor, second in (("a", 0), ("b", 20)):
-                for s, state in ((second, "on"), (second + 12, "off")):
-                    events.append(f"2026-03-02T08:{minute:02d}:{s:02d},{sensor},{state}")
-        made = self.folder / "gap"
-        self.calibrate(made, log=[self.write("twelve.csv", "\n".join(events) + "\n")])
+        made, events, _ = self.held()
         self.assertEqual(json.loads((made / "counter.json").read_text())["holds_s"], [12, 12])
         later = [events[0]]
         for line in events[1:]:
