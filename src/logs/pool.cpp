@@ -133,7 +133,8 @@ counting::Stretch readings_of(const dataset::RoomDayRows& rows, double step_s) {
   for (std::size_t i = 0; i < n * per; ++i) {
     for (std::size_t k = 0; k < n_sensors; ++k) {
       std::uint8_t& bit = stretch.motion[i / per * n_sensors + k];
-      if (bit != 1) bit = std::max(bit, rows.motion[i * n_sensors + k]);
+      const std::uint8_t row = rows.motion[i * n_sensors + k];
+      if (row == 1 || bit == 0) bit = row;  // what is unknown hides no motion, before or after
     }
   }
   for (std::size_t i = 0; i < n; ++i) stretch.people.push_back(rows.people[i * per + per - 1]);

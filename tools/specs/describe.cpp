@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "files/read/sensor_reader.cpp"
+#include "model/schema/dome.hpp"
 #include "model/schema/fields.hpp"
 
 namespace pirsim {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') result += '\\';
@@ -32,7 +32,7 @@ std::string number(double value) {
 
 /// Words that are numbers are numbers in Python.
 std::string word(std::string_view text) {
-  return text.find_first_not_of("0123456789") == std::string::npos ? std::string(text) : quoted(text);
+  return text.find_first_not_of("0123456789") == std::string::npos ? std::string(text) : in_quotes(text);
 }
 
 template <Worded T>
@@ -69,7 +69,7 @@ struct Python<T> {
 template <>
 struct Python<std::string> {
   static std::string type() { return "str"; }
-  static std::string text(const std::string& value) { return quoted(value); }
+  static std::string text(const std::string& value) { return in_quotes(value); }
 };
 template <Worded T>
 struct Python<T> {
@@ -167,7 +167,7 @@ struct Python<T> {
 template <Worded Enum, std::size_t n>
 std::string among(const std::array<Enum, n>& allowed) {
   std::string words;
-  for (const Enum one : allowed) words += (words.empty() ? "" : ", ") + quoted(word_of(one));
+  for (const Enum one : allowed) words += (words.empty() ? "" : ", ") + in_quotes(word_of(one));
   return ", \"among\": [" + words + "]";
 }
 std::string among(const auto&) { return ""; }
@@ -180,15 +180,16 @@ constexpr bool is_action = []<typename... What>(std::variant<What...>*) {
 template <typename Spec>
 void print(std::string_view key) {
   const Spec spec{};
-  std::cout << "  " << quoted(key) << ": {\"is_action\": " << (is_action<Spec> ? "true" : "false");
-  if constexpr (requires { Fields<Spec>::about; }) std::cout << ", \"about\": " << quoted(Fields<Spec>::about);
+  std::cout << "  " << in_quotes(key) << ": {\"is_action\": " << (is_action<Spec> ? "true" : "false");
+  if constexpr (requires { Fields<Spec>::about; }) std::cout << ", \"about\": " << in_quotes(Fields<Spec>::about);
   std::cout << ", \"fields\": [";
   bool is_first = true;
   each_field<Spec>([&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(spec.*field.member)>;
-    std::cout << (is_first ? "\n" : ",\n") << "    {\"name\": " << quoted(field.name)
-              << ", \"type\": " << quoted(type_of<Value>()) << ", \"default\": " << quoted(written(spec.*field.member))
-              << ", \"meaning\": " << quoted(field.meaning) << among(field.range) << "}";
+    std::cout << (is_first ? "\n" : ",\n") << "    {\"name\": " << in_quotes(field.name)
+              << ", \"type\": " << in_quotes(type_of<Value>())
+              << ", \"default\": " << in_quotes(written(spec.*field.member))
+              << ", \"meaning\": " << in_quotes(field.meaning) << among(field.range) << "}";
     is_first = false;
   });
   std::cout << "]},\n";
@@ -216,5 +217,5 @@ int main() {
   print<SwingingArmSpec>("arm");
   print<PlacementLightSpec>("placement_light");
   print<NuisanceSpec>("nuisance");
-  std::cout << "  \"Activity\": " << quoted(literal<Activity>()) << "\n}\n";
+  std::cout << "  \"Activity\": " << in_quotes(literal<Activity>()) << "\n}\n";
 }
