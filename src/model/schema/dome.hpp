@@ -5,8 +5,8 @@
 #include <tuple>
 #include <vector>
 
-#include "pirsim/sensor.hpp"
 #include "model/schema/field.hpp"
+#include "pirsim/sensor.hpp"
 
 namespace pirsim {
 
