@@ -3,8 +3,9 @@
 
 Usage: check_layers.py [ROOT]; prints every violation as file:line: message and exits with 1 if there is any.
 The tables below are those in docs/architecture.md. Beside these it finds columns of rows that are listed outside
-of schema/columns.
+of schema/columns, and modules of the Python package that import each other in a circle.
 """
+import ast
 import pathlib
 import re
 import sys
@@ -139,6 +140,8 @@ def violations(root: pathlib.Path):
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
     yield from stray_files(root)
     yield from cycles(graph)
+    yield from cycles(binding_includes(root))
+    yield from cycles(python_imports(root))
     yield from listed_again(root)
     yield from second_lists(root)
     yield from split_names(root)
@@ -237,6 +240,41 @@ def second_lists(root: pathlib.Path):
             yield f"{file.relative_to(root)}:{number}: columns of '{table}' are listed a second time: take them from their list"
 
 
+def binding_includes(root: pathlib.Path):
+    """Which file of python/src includes which other."""
+    files = {file.name: file for file in sorted((root / "python/src").glob("*.?pp"))}
+    found = {name: [match.group(2) for match in map(INCLUDE.match, file.read_text().splitlines()) if match]
+             for name, file in files.items()}
+    return {f"python/src/{name}": [f"python/src/{target}" for target in targets if target in files]
+            for name, targets in found.items()}
+
+
+def python_imports(root: pathlib.Path):
+    """Which file of the Python package imports which other, but for those that it imports for types alone."""
+    graph = {}
+    for file in sorted((root / "python/pirsim").rglob("*.py")):
+        targets = [target for node in imports_in(ast.parse(file.read_text())) for target in imported_files(file, node)]
+        graph[str(file.relative_to(root))] = [str(target.relative_to(root)) for target in targets]
+    return graph
+
+
+def imports_in(node):
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and isinstance(child.test, ast.Name) and child.test.id == "TYPE_CHECKING":
+            continue
+        if isinstance(child, ast.ImportFrom) and child.level > 0:
+            yield child
+        yield from imports_in(child)
+
+
+def imported_files(file: pathlib.Path, node: ast.ImportFrom):
+    """Of `from .a import b`: a/b.py if there is one, else a.py, or a/__init__.py. `_core` is the compiled module."""
+    base = file.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+    for name in (alias.name for alias in node.names if alias.name != "_core"):
+        places = (base / f"{name}.py", base / name / "__init__.py", base.with_suffix(".py"), base / "__init__.py")
+        yield from [place for place in places if place.is_file()][:1]
+
+
 def cycles(graph):
     state = {}
 
@@ -244,7 +282,7 @@ def cycles(graph):
         state[node] = "open"
         for target in graph.get(node, []):
             if state.get(target) == "open":
-                yield f"{node}:1: include cycle: {' -> '.join([*path, node, target])}"
+                yield f"{node}:1: a circle of includes or imports: {' -> '.join([*path, node, target])}"
             elif target in graph and target not in state:
                 yield from visit(target, [*path, node])
         state[node] = "done"

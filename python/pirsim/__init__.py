@@ -11,16 +11,14 @@ Scenes and scripts are files, or objects of `pirsim.specs`.
 
 from . import counting, errors, specs
 from ._core import __version__, git_revision
-from ._control import LightCosts, control
-from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
-                      write_scene, write_script)
-from ._log import Log, LogLengths, LogPair, LogSensor, read_log
-from ._look import (Findings, Page, Picture, PlacementLight, Placements, PlacementScore, SensorSight, check, export, placements, preview,
-                    view)
+from ._inputs import (EffectInfo, EffectParameter, data_directory, effects, facing, read_scene, read_script,
+                      sensor_model, write_scene, write_script)
+from ._logs import LightCosts, Log, LogLengths, LogPair, LogSensor, control, read_log
+from ._reconcile import Candidate, Cell, FittedEffect, Reconciliation, reconcile
 from ._result import Fault, Incident, Result
-from ._study import Model, Poses, Rays, Trace, compile, data_directory, run, trace
-from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
-from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
+from ._study import Model, Poses, Rays, Trace, compile, dataset, room, run, trace
+from ._surveys import (CoverageMap, Findings, Grid, Page, Picture, PlacementLight, Placements, PlacementScore,
+                       SensorSight, WalkTest, check, coverage, export, placements, preview, view, walk_test)
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Area, AreaCounts, Clock, Cluster, Comparator, Counts, Detector,

@@ -6,7 +6,7 @@ import difflib
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
+from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -79,7 +79,8 @@ class Result:
     seed: int
     """Of the study, or of what `Trace.emit()` drew."""
     clock: npt.NDArray[np.datetime64] | None = None
-    """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a clock (`Script.begin`, or a schedule)."""
+    """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a clock (`Script.begin`,
+    or a schedule)."""
     zones: list[npt.NDArray[np.uint8]] = field(default_factory=list, repr=False)
     """A [tick, zone] array for each run, 1 where the zone sees somebody; empty ones unless `run(zones=True)`."""
     occupants: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
@@ -114,9 +115,7 @@ class Result:
     def people_in(self, area: str) -> npt.NDArray[np.uint16]:
         """[run, second] people in the area of this id, or `elsewhere`. Raises KeyError for one that `areas` lacks."""
         if area not in self.areas:
-            near = difflib.get_close_matches(area, self.areas, n=1)
-            known = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self.areas) or 'none'}"
-            raise KeyError(f"no area {area!r} ({known})")
+            raise KeyError(f"no area {area!r} ({_hint(area, self.areas)})")
         return self.people_of_areas[:, :, self.areas.index(area)]
 
     @cached_property
@@ -134,9 +133,8 @@ class Result:
         for phase in phases:
             if phase in self.phases:
                 continue
-            near = difflib.get_close_matches(phase, self.phases, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(filter(None, self.phases))}"
-            warnings.warn(f"no row of these runs has a phase {phase!r}, so it counts as 0 ({hint})", stacklevel=2)
+            warnings.warn(f"no row of these runs has a phase {phase!r}, so it counts as 0 "
+                          f"({_hint(phase, self.phases)})", stacklevel=2)
         wanted = np.isin(np.array(self.phases), phases)[self.phase_code]
         return (self.bits * wanted[:, :, np.newaxis]).sum(axis=1, dtype=np.int64)
 
@@ -200,8 +198,9 @@ class Result:
             "trial": ("run", self.trial), "replicate": ("run", self.replicate)})
 
 
-def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArray[np.str_]:
-    return np.array(texts)[column]
+def _hint(name: str, known: Sequence[str]) -> str:
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"there are {', '.join(filter(None, known)) or 'none'}"
 
 
 def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[str, ...],
@@ -212,7 +211,7 @@ def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[s
     for table, columns in ((occupants, [name for name in occupants if occupants[name].dtype == np.uint16]),
                            (signals, ("person", "part"))):
         for column in columns:
-            table[column] = _texts(table[column], texts)
+            table[column] = np.array(texts)[table[column]]
     occupants["inside"] = occupants.pop("where") == "inside"
     occupants["inside"].flags.writeable = False
     arrays["faults"] = [Fault(*fault) for fault in arrays["faults"]]

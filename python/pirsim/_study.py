@@ -1,32 +1,22 @@
-"""Models, runs and recordings."""
+"""Models, runs and recordings, and datasets of many rooms and days."""
 
 from __future__ import annotations
 
-import json
-import operator
-import os
 import warnings
-from typing import Any, Callable, Iterable, Mapping, NamedTuple, NoReturn, Sequence, Union
+from typing import Any, Iterable, Mapping, NamedTuple, NoReturn, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._inputs import (Overrides, PathOr, Progress, as_count, as_file, as_input, as_overrides, as_path, as_scene,
+                      as_seed, as_threads, as_whole, folders, warn_of)
 from ._result import Result, make_result
-from .errors import IncompleteWarning, InputWarning
 from ._spec_parts import counted
+from .errors import IncompleteWarning
 from .specs import Effect, Scene, Script
 
-PathOr = Union[str, "os.PathLike[str]"]
-Progress = Callable[[int, int], Any]
-"""Called about ten times a second with what is done and what there is to do."""
-Overrides = Union[Mapping[str, Any], Sequence[str]]
-"""{"people.0.stature_m": 1.7}, or as on the command line ["people.0.stature_m=1.7"]."""
 EffectLike = Union[Effect, str, Mapping[str, Mapping[str, Any]]]
-
-data_directory: str = os.path.join(os.path.dirname(__file__), "data")
-"""Rooms, studies, recipes and sensors that come with pirsim, as data/ in its source. Where a function takes a file, the
-name of a shipped one will do: "meeting_room.gltf"."""
 
 
 class Poses(NamedTuple):
@@ -59,89 +49,6 @@ class Rays(NamedTuple):
     def __repr__(self) -> str:
         return (f"<pirsim.Rays: {len(self.range_m)} rays of {len(np.unique(self.zone))} zones and "
                 f"{len(np.unique(self.sensor))} sensors, up to {self.range_m.max(initial=0.0):.1f} m>")
-
-
-def as_path(path: PathOr) -> str:
-    """A file's name as the module takes it. Raises ValueError for a NUL, at which the system would cut it off."""
-    name = os.fspath(path)
-    if not isinstance(name, str):
-        raise TypeError(f"expected the name of a file as a text, got {type(name).__name__}")
-    if "\0" in name:
-        raise ValueError(f"{name!r} can't be the name of a file: it has a NUL character")
-    return name
-
-
-def as_file(path: PathOr, kind: str) -> str:
-    """A file's name, or where there is no such file that of the shipped one, of this kind ("rooms"). Raises
-    FileError, with the nearest name."""
-    return _core.find_file(as_path(path), kind, [data_directory])
-
-
-def as_threads(threads: int) -> int:
-    """No more of them than cores will begin, whatever the number."""
-    return as_count(threads, "threads", 0, 2**32 - 1)
-
-
-def as_count(value: int, name: str, least: int, most: int) -> int:
-    """A whole number of any type. Raises TypeError and ValueError, with the argument's name."""
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name}: expected a whole number, got a {type(value).__name__}") from None
-    if not least <= number <= most:
-        raise ValueError(f"{name}: expected a whole number from {least} up to {most}, got {number}")
-    return number
-
-
-def as_seed(seed: int) -> int:
-    return as_count(seed, "seed", 0, 2**63 - 1)
-
-
-def as_overrides(set: Overrides | None) -> list[str]:
-    if set is None:
-        return []
-    if isinstance(set, str):
-        raise TypeError("set: expected a dict, as {'people.0.stature_m': 1.7}, or a list of texts")
-    if isinstance(set, Mapping):
-        return [f"{key}={json.dumps(value, default=_plain, ensure_ascii=False)}" for key, value in set.items()]
-    return list(set)
-
-
-def _plain(value: Any) -> Any:
-    """Of numpy's numbers and arrays, for JSON."""
-    if isinstance(value, (np.generic, np.ndarray)):
-        return value.tolist()
-    raise TypeError(f"set: {value!r} can't be written as YAML")
-
-
-def as_input(value: Any, kind: type, set: Overrides | None = None) -> Any:
-    """A file's name as a text, which may be a shipped one's, or the object itself. kind: Scene, Script, or str for the
-    file of a survey."""
-    if kind is not str and isinstance(value, kind):
-        if set:
-            raise TypeError(f"set changes files; change the pirsim.{kind.__name__} itself")
-        return value
-    if not isinstance(value, (str, os.PathLike)):
-        raise TypeError(f"expected the name of a file or a pirsim.{kind.__name__}, got a {type(value).__name__}")
-    return as_file(value, "rooms" if kind is Scene else "studies")
-
-
-def as_scene(scene: Any, marks: PathOr | None) -> Any:
-    """A file's name, one with that of its marks, or the Scene itself."""
-    if marks is None:
-        return as_input(scene, Scene)
-    if isinstance(scene, Scene):
-        raise TypeError("marks: a pirsim.Scene has its own; read_scene(file, marks=...) adds those of a file")
-    return as_input(scene, Scene), as_path(marks)
-
-
-def folders(sensors: PathOr | Iterable[PathOr] | None) -> tuple[list[str], list[str]]:
-    """Where sensor models are looked for first, and last."""
-    if sensors is None:
-        return [], [data_directory]
-    if isinstance(sensors, (str, os.PathLike)):
-        sensors = [sensors]
-    return [as_path(folder) for folder in sensors], [data_directory]
 
 
 def as_effect(effect: EffectLike) -> Effect:
@@ -249,24 +156,32 @@ def compile(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | 
             sensors: PathOr | Iterable[PathOr] | None = None, marks: PathOr | None = None) -> Model:
     """Validates a scene and a script and makes a Model of them.
 
-    scene: a glTF file, or a Scene. marks: a YAML file with marks for a scene's file that is left as it is. script: a YAML file, or a Script. set: values to replace in the script's file
-    before it is read, by their place in it: {"people.0.stature_m": 1.7, "sensing.response": "analog"}. sensors:
-    folders in which sensor models of a scene's file are looked for first; the shipped ones are always found.
+    scene: a glTF file, or a Scene. marks: a YAML file with marks for a scene's file that is left as it is. script: a
+    YAML file, or a Script. set: values to replace in the script's file before it is read, by their place in it:
+    {"people.0.stature_m": 1.7, "sensing.response": "analog"}. sensors: folders in which sensor models of a scene's file
+    are looked for first; the shipped ones are always found.
 
     Raises InputError, with every fault and its place; InfeasibleError for a seat or point that can't be reached;
     FileError. What was repaired or ignored is an InputWarning.
     """
-    core = _core.compile(as_scene(scene, marks), as_input(script, Script, set), as_overrides(set), *folders(sensors))
-    for diagnostic in core.warnings:
-        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
+    core = _core.compile(as_scene(scene, marks), as_input(script, Script, set), as_overrides(set), folders(sensors))
+    warn_of(core.warnings)
     return Model._of(core)
 
 
-def _handle_of(model: Model) -> _core.Model:
+def handle_of(model: Model) -> _core.Model:
     if not isinstance(model, Model):
         raise TypeError(f"expected a pirsim.Model, which pirsim.compile(scene, script) makes, not a "
                         f"{type(model).__name__}")
     return model._handle
+
+
+def run_number(model: Model, given: Any, name: str = "run") -> int:
+    """Raises TypeError, and IndexError for a run that the study hasn't."""
+    number = as_whole(given, name)
+    if not 0 <= number < model.n_runs:
+        raise IndexError(f"run {number}: the study has runs 0 to {model.n_runs - 1}")
+    return number
 
 
 def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int] | None:
@@ -277,16 +192,10 @@ def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int] | 
     if isinstance(runs, (str, bytes)):
         raise TypeError(f"runs: expected a number, a range or a list, got {runs!r}")
     numbers: list[int] = []
-    n_runs = model.n_runs
     for given in runs if isinstance(runs, Iterable) else [runs]:
-        try:
-            number = operator.index(given)
-        except TypeError:
-            raise TypeError(f"runs: expected whole numbers, got {given!r}") from None
-        if not 0 <= number < n_runs:
-            raise IndexError(f"run {number}: the study has runs 0 to {n_runs - 1}")
-        if len(numbers) == n_runs:
-            raise ValueError(f"runs: more than the {n_runs} that the study has")
+        number = run_number(model, given, "runs")
+        if len(numbers) == model.n_runs:
+            raise ValueError(f"runs: more than the {model.n_runs} that the study has")
         numbers.append(number)
     return numbers
 
@@ -302,7 +211,7 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
     Other Python threads run meanwhile; Ctrl-C ends it after the runs that have begun. A run that can't go on has no
     rows; `Result.faults` says why, and an IncompleteWarning that there are some.
     """
-    arrays = _core.run(_handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
+    arrays = _core.run(handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
                        progress)
     result = make_result(arrays, model.sensors.names, model.areas, model.doors, model.seed)
     if result.faults:
@@ -350,7 +259,7 @@ class Trace:
             model = self._model
         listed = None if effects is None else [as_effect(effect) for effect in effects]
         own = None if seed is None else as_seed(seed)
-        return make_result(_core.emit(_handle_of(model), self._handle, listed, own, progress),
+        return make_result(_core.emit(handle_of(model), self._handle, listed, own, progress),
                            model.sensors.names, model.areas, model.doors,
                            model.seed if own is None else own)
 
@@ -367,5 +276,23 @@ def trace(model: Model, runs: int | Iterable[int] | None = None, *, threads: int
     It holds what each sensor's response needs, zones or the power that arrives, each different moment once. Arguments
     as of run().
     """
-    core = _core.record(_handle_of(model), _run_numbers(model, runs), as_threads(threads), progress)
+    core = _core.record(handle_of(model), _run_numbers(model, runs), as_threads(threads), progress)
     return Trace._of(core, model)
+
+
+def dataset(recipe: PathOr, folder: PathOr, *, set: Overrides | None = None, resume: bool = False,
+            sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
+            progress: Progress | None = None) -> None:
+    """Makes a dataset of many rooms and days from a recipe's YAML file (docs/formats/dataset.md).
+
+    folder: gets a file of rows for each room and day, tables, datapackage.json and a README. set: values to replace in
+    the recipe, {"sensing.response": "zones"}. resume: keeps the days that are there already, as after Ctrl-C. progress is
+    told in days of rooms.
+    """
+    warn_of(_core.dataset(as_file(recipe, "recipes"), as_path(folder), as_overrides(set), folders(sensors), resume,
+                          as_threads(threads), progress))
+
+
+def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
+    """Room `number` (from 1) of a dataset's recipe: always the same for the same recipe."""
+    return _core.room(as_file(recipe, "recipes"), as_count(number, "number", -2**31, 2**31 - 1), folders(sensors))

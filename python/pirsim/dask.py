@@ -24,18 +24,15 @@ import sys
 import tempfile
 import warnings
 from dataclasses import dataclass
-from typing import Any, Callable, Iterable
+from typing import Any, Iterable
 
 from . import __version__, git_revision, read_scene, read_script
-from ._files import keep_inputs, require_place, write
-from ._study import PathOr, as_file
-from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InternalError,
-                     UsageError)
+from ._inputs import PathOr, Progress, as_file, keep_inputs, require_place, write
+from .errors import Error, ErrorCode, IncompleteWarning, _exception
 from .specs import Diagnostic, InputFile
 
 __all__ = ["run_dataset", "run_study"]
 
-Progress = Callable[[int, int], None]
 _DIAGNOSTIC = re.compile(r"^(?:(?P<file>.+?)(?::(?P<line>\d+):(?P<column>\d+))?: )?"
                          r"(?P<severity>error|warning): (?P<text>.*)$", re.MULTILINE)
 
@@ -184,7 +181,5 @@ def _error(code: int, message: str, file: str = "") -> Error:
     diagnostics = [Diagnostic("warning" if found["severity"] == "warning" else "error", found["file"] or "",
                               int(found["line"] or 0), int(found["column"] or 0), found["text"])
                    for found in _DIAGNOSTIC.finditer(message)]
-    kinds = {ErrorCode.USAGE: UsageError, ErrorCode.INPUT: InputError, ErrorCode.IO: FileError,
-             ErrorCode.INFEASIBLE: InfeasibleError}
-    known = ErrorCode(code) if code in list(ErrorCode) else ErrorCode.INTERNAL
-    return kinds.get(known, InternalError)(known, diagnostics or [Diagnostic("error", file, 0, 0, message)])
+    known = code if code in list(ErrorCode) else ErrorCode.INTERNAL
+    return _exception(known, diagnostics or [Diagnostic("error", file, 0, 0, message)])

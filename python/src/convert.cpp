@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "arrays.hpp"
-
 namespace pirsim::python {
 
 nb::object spec_class(const char* name) { return nb::module_::import_("pirsim.specs").attr(name); }
@@ -226,20 +224,20 @@ ScriptedAction Special<ScriptedAction>::from(nb::handle value, const std::string
   return action;
 }
 
-SceneSpec checked_scene(nb::handle scene) {
-  SceneSpec spec = from_python<SceneSpec>(scene, "scene");
+namespace {
+
+template <typename Spec>
+Spec checked(nb::handle value, const char* path) {
+  Spec spec = from_python<Spec>(value, path);
   Diagnostics diagnostics;
   check(spec, diagnostics);
   diagnostics.throw_if_errors();
   return spec;
 }
 
-ScriptSpec checked_script(nb::handle script) {
-  ScriptSpec spec = from_python<ScriptSpec>(script, "script");
-  Diagnostics diagnostics;
-  check(spec, diagnostics);
-  diagnostics.throw_if_errors();
-  return spec;
-}
+}  // namespace
+
+SceneSpec checked_scene(nb::handle scene) { return checked<SceneSpec>(scene, "scene"); }
+ScriptSpec checked_script(nb::handle script) { return checked<ScriptSpec>(script, "script"); }
 
 }  // namespace pirsim::python

@@ -1,14 +1,17 @@
-// Specs to and from the plain objects of pirsim.specs.
+// Specs to and from the plain objects of pirsim.specs, and vectors to arrays of numpy.
 #pragma once
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <initializer_list>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -195,6 +198,30 @@ template <>
 struct Convert<ScriptedAction> : Special<ScriptedAction> {};
 template <>
 struct Convert<Issue> : Special<Issue> {};
+
+/// A vector handed to numpy without a copy: the array owns the memory. Read-only, in C order. `As`: the element type
+/// that numpy shows, of the same size.
+template <typename As, typename T>
+[[nodiscard]] nb::object to_numpy_as(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
+  static_assert(sizeof(As) == sizeof(T));
+  auto owned = std::make_unique<std::vector<T>>(std::move(values));
+  const void* data = owned->data();
+  nb::capsule owner(owned.get(), [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  (void)owned.release();
+  return nb::cast(nb::ndarray<nb::numpy, const As>(data, shape.size(), shape.begin(), owner));
+}
+template <typename T>
+[[nodiscard]] nb::object to_numpy(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
+  return to_numpy_as<T>(std::move(values), shape);
+}
+
+/// Whatever `tell` makes of each item.
+template <typename Item, typename Tell>
+[[nodiscard]] nb::list listed(const std::vector<Item>& items, const Tell& tell) {
+  nb::list all;
+  for (const Item& item : items) all.append(tell(item));
+  return all;
+}
 
 /// A scene or script made in Python, refused as a file with the same in it would be.
 [[nodiscard]] SceneSpec checked_scene(nb::handle scene);

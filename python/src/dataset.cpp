@@ -12,11 +12,10 @@ namespace pirsim::python {
 namespace {
 
 nb::object make_dataset(const std::string& recipe, const std::string& folder, const std::vector<std::string>& set,
-                        std::vector<std::string> sensors, std::vector<std::string> data, bool resume, unsigned threads,
-                        nb::handle progress) {
-  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, set, folders_of(data));
+                        const Folders& folders, bool resume, unsigned threads, nb::handle progress) {
+  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, set, folders.data_directories);
   dataset::DatasetOptions options;
-  options.scenes = options_of({std::move(sensors), std::move(data)});
+  options.scenes = folders;
   options.threads = threads;
   options.start = resume ? dataset::DatasetOptions::Start::resume : dataset::DatasetOptions::Start::anew;
   std::vector<Issue> told;
@@ -35,22 +34,20 @@ nb::object make_dataset(const std::string& recipe, const std::string& folder, co
   return to_python(told);
 }
 
-nb::object room(const std::string& recipe, int number, std::vector<std::string> sensors,
-                std::vector<std::string> data) {
-  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, {}, folders_of(data));
+nb::object room(const std::string& recipe, int number, const Folders& folders) {
+  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, {}, folders.data_directories);
   if (number < 1 || number > spec.n_rooms())
     throw nb::index_error(
         ("room " + std::to_string(number) + ": the recipe has rooms 1 to " + std::to_string(spec.n_rooms())).c_str());
-  return to_python(dataset::room_of(spec, number, options_of({std::move(sensors), std::move(data)})));
+  return to_python(dataset::room_of(spec, number, folders));
 }
 
 }  // namespace
 
 void add_dataset(nb::module_& module) {
-  module.def("dataset", &make_dataset, nb::arg("recipe"), nb::arg("folder"), nb::arg("set"), nb::arg("sensors"),
-             nb::arg("data"), nb::arg("resume"), nb::arg("threads"), nb::arg("progress").none(), "Diagnostics.");
-  module.def("room", &room, nb::arg("recipe"), nb::arg("number"), nb::arg("sensors"), nb::arg("data"),
-             "A pirsim.Scene.");
+  module.def("dataset", &make_dataset, "recipe"_a, "folder"_a, "set"_a, "folders"_a, "resume"_a, "threads"_a,
+             "progress"_a.none(), "Diagnostics.");
+  module.def("room", &room, "recipe"_a, "number"_a, "folders"_a, "A pirsim.Scene.");
 }
 
 }  // namespace pirsim::python

@@ -52,43 +52,37 @@ nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script) {
   nb::dict result;
   result["verdict"] = to_python(std::string(name(outcome.verdict)));
   result["sentence"] = to_python(reconcile::sentence(outcome));
-  std::vector<std::string> findings;
-  for (const reconcile::DataFinding& finding : outcome.data_findings) findings.push_back(reconcile::in_words(finding));
-  result["data_findings"] = to_python(findings);
+  result["data_findings"] = listed(outcome.data_findings, [](const reconcile::DataFinding& finding) {
+    return to_python(reconcile::in_words(finding));
+  });
   result["details"] = to_python(reconcile::details(outcome));
   result["p"] = outcome.location.p;
   result["named"] = to_python(outcome.named);
-  nb::list fits, candidates, cells;
-  for (const reconcile::FittedEffect& fit : outcome.fits) {
+  result["fits"] = listed(outcome.fits, [](const reconcile::FittedEffect& fit) {
     nb::dict intervals;
     for (const reconcile::FittedParameter& p : fit.parameters) {
       intervals[to_python(p.name)] = nb::make_tuple(p.interval.low, p.interval.high);
     }
-    fits.append(nb::make_tuple(to_python(fit.effect), intervals));
-  }
-  for (const reconcile::Candidate& candidate : outcome.candidates) {
-    candidates.append(nb::make_tuple(to_python(candidate.score.hypothesis), candidate.score.probability,
-                                     candidate.score.p, nb::bool_(candidate.kept),
-                                     to_python(reconcile::in_words(candidate))));
-  }
-  for (const reconcile::LocatedCell& cell : outcome.location.cells) {
-    cells.append(nb::make_tuple(to_python(cell.trial), to_python(cell.sensor), cell.measured_s, cell.expected_s,
-                                cell.low_s, cell.high_s, cell.adjusted_p));
-  }
-  result["fits"] = fits;
-  result["candidates"] = candidates;
-  result["cells"] = cells;
+    return nb::make_tuple(to_python(fit.effect), intervals);
+  });
+  result["candidates"] = listed(outcome.candidates, [](const reconcile::Candidate& candidate) {
+    return nb::make_tuple(to_python(candidate.score.hypothesis), candidate.score.probability, candidate.score.p,
+                          nb::bool_(candidate.kept), to_python(reconcile::in_words(candidate)));
+  });
+  result["cells"] = listed(outcome.location.cells, [](const reconcile::LocatedCell& cell) {
+    return nb::make_tuple(to_python(cell.trial), to_python(cell.sensor), cell.measured_s, cell.expected_s, cell.low_s,
+                          cell.high_s, cell.adjusted_p);
+  });
   result["patched"] = to_python(reconcile::patched(script, outcome));
   return result;
 }
 
 /// measured: the name of a file, or with `text` its content. names: of program, scene and script, for the report.
 nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string& measured, const std::string& text,
-                         const std::vector<std::string>& overrides, std::vector<std::string> sensors,
-                         std::vector<std::string> data, const Question& question, std::uint64_t seed, unsigned threads,
-                         nb::handle progress) {
-  const ScriptSpec given = script_of(script, overrides, data);
-  const SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
+                         const std::vector<std::string>& overrides, const Folders& folders, const Question& question,
+                         std::uint64_t seed, unsigned threads, nb::handle progress) {
+  const ScriptSpec given = script_of(script, overrides, folders);
+  const SceneSpec scene_spec = scene_of(scene, folders);
   const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, given)
                                                 : reconcile::parse_measured(text, measured, scene_spec, given);
   const ScriptSpec script_spec = reconcile::with_holds(scene_spec, given, rows);
@@ -128,9 +122,8 @@ void add_reconcile(nb::module_& module) {
       .def_rw("nuisance", &Question::nuisance)
       .def_rw("folder", &Question::folder)
       .def_rw("table", &Question::table);
-  module.def("reconcile", &reconcile_study, nb::arg("scene"), nb::arg("script"), nb::arg("measured"), nb::arg("text"),
-             nb::arg("overrides"), nb::arg("sensors"), nb::arg("data"), nb::arg("question"), nb::arg("seed"),
-             nb::arg("threads"), nb::arg("progress").none(), "Parts of pirsim.Reconciliation, by name.");
+  module.def("reconcile", &reconcile_study, "scene"_a, "script"_a, "measured"_a, "text"_a, "overrides"_a, "folders"_a,
+             "question"_a, "seed"_a, "threads"_a, "progress"_a.none(), "Parts of pirsim.Reconciliation, by name.");
 }
 
 }  // namespace pirsim::python

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""tools/check_layers.py finds a list of all fields of a spec, and one of a table's columns, and nothing else.
+"""tools/check_layers.py finds a list of all fields of a spec, one of a table's columns, circles of the Python package,
+and nothing else.
 
 Usage: test_check_layers.py SOURCE_DIRECTORY
 """
@@ -27,6 +28,45 @@ class SplitNames(unittest.TestCase):
             file.write_text('TEST_CASE("opens, shuts") { run("a;b"); }\nTEST_CASE("opens; shuts") {}\n')
             self.assertEqual([text.split(" ")[0] for text in check_layers.split_names(pathlib.Path(folder))],
                              ["tests/unit/door_test.cpp:2:"])
+
+
+class Circles(unittest.TestCase):
+    def circles_of(self, graph_of, files):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in files.items():
+                (pathlib.Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
+                (pathlib.Path(folder) / name).write_text(content)
+            return list(check_layers.cycles(graph_of(pathlib.Path(folder))))
+
+    def of_modules(self, modules):
+        return self.circles_of(check_layers.python_imports,
+                               {f"python/pirsim/{name}.py": text for name, text in modules.items()})
+
+    def test_modules_that_import_each_other(self):
+        for one, other in (("from ._b import x", "from ._a import y"), ("from . import _b", "from . import _a"),
+                           ("def late():\n    from ._b import x", "from . import _core, _a")):
+            with self.subTest(one):
+                found = self.of_modules({"_a": one, "_b": other})
+                self.assertEqual(found, ["python/pirsim/_b.py:1: a circle of includes or imports: "
+                                         "python/pirsim/_a.py -> python/pirsim/_b.py -> python/pirsim/_a.py"])
+
+    def test_a_module_that_imports_what_its_package_offers(self):
+        self.assertEqual(len(self.of_modules({"__init__": "from ._a import x", "_a": "from . import y"})), 1)
+        self.assertEqual(len(self.of_modules({"_a": "from .part import x", "part/__init__": "from ._b import x",
+                                              "part/_b": "from .. import _a"})), 1)
+
+    def test_none_without_a_circle_or_for_types_alone(self):
+        self.assertEqual(self.of_modules({
+            "__init__": "from ._a import x\nfrom . import part", "_a": "from . import _core, _b",
+            "_b": "import os\nif TYPE_CHECKING:\n    from ._a import x",
+            "part/__init__": "from .. import _core\nfrom .._a import x"}), [])
+
+    def test_headers_of_the_bindings(self):
+        files = {"python/src/a.hpp": '#include "b.hpp"\n', "python/src/b.hpp": "#include <map>\n",
+                 "python/src/c.cpp": '#include "a.hpp"\n'}
+        self.assertEqual(self.circles_of(check_layers.binding_includes, files), [])
+        files["python/src/b.hpp"] = '#include "a.hpp"\n'
+        self.assertEqual(len(self.circles_of(check_layers.binding_includes, files)), 1)
 
 
 class ListedAgain(unittest.TestCase):

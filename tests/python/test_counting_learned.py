@@ -10,7 +10,7 @@ from test_counting_training import simulated
 
 import pirsim
 from pirsim import counting
-from pirsim.counting._features import features
+from pirsim.counting._learned import features
 
 WINDOWS = (2, 10, 30)
 

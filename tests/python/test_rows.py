@@ -82,7 +82,7 @@ CASES = ["study A", "several people, runs of different length", "other windows",
 
 
 def options(changes):
-    return [part for change in pirsim._study.as_overrides(changes) for part in ("--set", change)]
+    return [part for change in pirsim._inputs.as_overrides(changes) for part in ("--set", change)]
 
 
 @pytest.mark.parametrize("case", CASES)

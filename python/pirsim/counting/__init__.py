@@ -14,12 +14,12 @@ from __future__ import annotations
 from typing import Any, Callable, Iterable, Union
 
 from .. import _core
-from .._study import PathOr, as_path
-from ._calibration import Calibration, ParameterRange, Statistic, WeighedRoom, calibrate
-from ._estimates import Estimates
-from ._hidden_markov import HiddenMarkovCounter, LiveCount, Room, train_hidden_markov
-from ._learned import LearnedCounter, LearnedLiveCount, LogisticCounter, TreesCounter, parse_logistic, train_logistic, train_trees
-from ._readings import Day, read_dataset
+from .._inputs import PathOr, as_path
+from ._hidden_markov import (Calibration, HiddenMarkovCounter, LiveCount, ParameterRange, Room, Statistic,
+                             WeighedRoom, calibrate, train_hidden_markov)
+from ._learned import (LearnedCounter, LearnedLiveCount, LogisticCounter, TreesCounter, parse_logistic,
+                       train_logistic, train_trees)
+from ._readings import Day, Estimates, read_dataset
 
 __all__ = [
     "Calibration", "Counter", "Day", "Estimates", "HiddenMarkovCounter", "LearnedCounter", "LearnedLiveCount", "LiveCount",

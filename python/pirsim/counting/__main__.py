@@ -8,7 +8,7 @@ import sys
 import warnings
 
 from .. import errors
-from .._files import keep_inputs, require_place
+from .._inputs import keep_inputs, require_place
 from . import load, train
 
 

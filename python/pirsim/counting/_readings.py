@@ -1,16 +1,20 @@
-"""What counters learn and count from: readings of motion, half a minute each."""
+"""What counters learn and count from, readings of motion, half a minute each; and what they make of them."""
 
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, NamedTuple, Union
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
-from .._log import Log, read_log
-from .._study import PathOr, as_count, as_path, as_threads
+from .._inputs import PathOr, as_count, as_path, as_threads, keep_inputs, write
+from .._logs import Log, read_log
+
+if TYPE_CHECKING:
+    import pandas
 
 UNKNOWN = 2
 """In place of a bit."""
@@ -79,7 +83,8 @@ def as_reading(bits: npt.ArrayLike) -> Motion:
 def as_day(day: Day) -> Day:
     """With arrays as the module takes them. Raises ValueError."""
     motion, people = as_motion(day.motion), _known_numbers(day.people, -1)
-    if np.asarray(day.people).dtype.kind == "b" or people.shape != (len(motion),) or not np.array_equal(people, np.floor(people)):
+    is_whole = np.asarray(day.people).dtype.kind != "b" and np.array_equal(people, np.floor(people))
+    if people.shape != (len(motion),) or not is_whole:
         raise ValueError(f"room {day.room}: expected a whole number of people for each of {len(motion)} readings")
     if len(people) and not (-1 <= people.min() and people.max() <= MOST_PEOPLE):
         raise ValueError(f"room {day.room}: expected 0 to {MOST_PEOPLE} people, or -1 where nobody counted")
@@ -142,3 +147,67 @@ def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
         traits = _core.LogTraits(log.interval_s, names, [one.hold_s for one in log.facts])
     return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock,
                     traits, log._files if isinstance(log, Log) else ())
+
+
+# -- estimates -------------------------------------------------------------------------------------------------------
+
+def middle_count(probabilities: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    """[...] of [..., count]: the least count that as many people or fewer have at least even odds of. It makes the
+    absolute error least. -1 where the probabilities are NaN."""
+    middle = np.argmax(np.cumsum(probabilities, axis=-1) >= 0.5 - 1e-9, axis=-1)
+    return np.where(np.isnan(probabilities[..., 0]), -1, middle)
+
+
+def count_or_none(probabilities: npt.NDArray[np.float64]) -> int | None:
+    """The middle of one reading's distribution; None where nobody knows."""
+    people = int(middle_count(probabilities))
+    return people if people >= 0 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Estimates:
+    """How many people were there, reading by reading."""
+
+    people: npt.NDArray[np.int64]
+    """[reading] the middle of the distribution, which makes the absolute error least; -1 where nothing has been known
+    for five minutes."""
+    probabilities: npt.NDArray[np.float64]
+    """[reading, count]; NaN there."""
+    time: npt.NDArray[Any]
+    """[reading] its end: local time (datetime64[us]), or seconds for a log that tells no time of day."""
+    expected_error: tuple[float, float] | None
+    """Of the counter."""
+    _readings: Readings = field(repr=False)
+
+    def __repr__(self) -> str:
+        n, n_counts = self.probabilities.shape
+        told = self.people[self.people >= 0]
+        return (f"<pirsim.counting.Estimates: {n} readings, 0 to {n_counts - 1} people, "
+                f"{told.mean() if len(told) else 0:.2f} on average"
+                + (f", {n - len(told)} unknown>" if len(told) < n else ">"))
+
+    @property
+    def mean(self) -> npt.NDArray[np.float64]:
+        """[reading] mean of the distribution, NaN where nobody knows."""
+        return self.probabilities @ np.arange(self.probabilities.shape[1])
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a reading, with the columns of write_csv(); what is unknown is missing."""
+        import pandas as pd
+
+        time = "time" if self.time.dtype.kind == "M" else "time_s"
+        columns: dict[str, Any] = {time: self.time, "people": pd.arrays.IntegerArray(self.people.copy(), self.people < 0),
+                                   "mean": self.mean}
+        columns.update((f"p{n}", column) for n, column in enumerate(self.probabilities.T))
+        return pd.DataFrame(columns)
+
+    def write_csv(self, file: PathOr) -> None:
+        """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count.
+        Raises UsageError for the file of the log."""
+        keep_inputs([("file", file)], [("log", one) for one in self._readings.files])
+        write(file, _core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
+
+
+def estimates_of(readings: Readings, probabilities: Any, expected_error: tuple[float, float] | None) -> Estimates:
+    time = readings.end_us.view("datetime64[us]") if readings.has_clock else readings.end_us * 1e-6
+    return Estimates(middle_count(probabilities), probabilities, time, expected_error, readings)

@@ -1,5 +1,4 @@
-// Counting people: counters, what they count from, calibration by a log.
-#include <nanobind/ndarray.h>
+// Logs of real sensors, counts of people from them, and light that sensors switch.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -7,71 +6,141 @@
 #include <algorithm>
 #include <cmath>
 #include <pirsim/calibrate.hpp>
+#include <pirsim/control.hpp>
 #include <pirsim/counting.hpp>
 #include <pirsim/dataset.hpp>
 #include <pirsim/log.hpp>
+#include <pirsim/log_facts.hpp>
 #include <sstream>
 
-#include "arrays.hpp"
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
 
+namespace pirsim {
+
+template <>
+struct Words<calibrate::Verdict> {
+  static constexpr WordList<calibrate::Verdict, 3> all{{{"like-these", calibrate::Verdict::like_these},
+                                                        {"none-like-it", calibrate::Verdict::none_like_it},
+                                                        {"too-little-told", calibrate::Verdict::too_little_told}}};
+};
+
+}  // namespace pirsim
+
 namespace pirsim::python {
 namespace {
 
-namespace nb = nanobind;
 using counting::Counter;
 using counting::Settings;
 
-using Bits = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Row = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using People = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Times = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Probabilities = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+template <typename T, int n>
+using Array = nb::ndarray<const T, nb::ndim<n>, nb::c_contig, nb::device::cpu>;
+using Bits = Array<std::uint8_t, 2>;
+using People = Array<std::int32_t, 1>;
+
+// -- logs -------------------------------------------------------------------------------------------------------------
+
+nb::tuple lengths(const LogLengths& found) {
+  return nb::make_tuple(found.n, found.floor_s, found.floor_share, found.shortest_s, found.q05_s, found.q25_s,
+                        found.median_s, found.q75_s, found.q95_s, found.longest_s);
+}
+
+nb::tuple sensor(const LogSensorFacts& facts) {
+  const bool is_known = facts.false_triggers.has_value();
+  return nb::make_tuple(to_python(facts.name), to_python(facts.motion_share()), facts.known_s, facts.unknown_s,
+                        lengths(facts.pulses), lengths(facts.pauses), to_python(facts.motion_by_hour),
+                        is_known ? nb::object(nb::int_(facts.false_triggers->n)) : nb::none(),
+                        is_known ? facts.false_triggers->hours : 0.0, to_python(facts.hold_s));
+}
+
+/// Microseconds of the windows' ends: UTC and local.
+nb::dict times(const LogWindows& windows) {
+  std::vector<std::int64_t> utc, local;
+  for (std::size_t i = 1; i <= windows.size(); ++i) {
+    const LogMoment end = windows.begin(i);
+    utc.push_back(end.us);
+    local.push_back(end.local_us());
+  }
+  const std::size_t n = utc.size();
+  nb::dict result;
+  result["utc_us"] = to_numpy(std::move(utc), {n});
+  result["local_us"] = to_numpy(std::move(local), {n});
+  return result;
+}
+
+nb::dict read(const std::vector<std::string>& files, const std::string& map_file, const std::string& map_text,
+              double window_s) {
+  Log log;
+  LogFacts facts;
+  LogRows rows;
+  attend(nb::none(), [&](Job& job) {
+    const LogMap map = !map_file.empty()   ? io::read_log_map(map_file)
+                       : !map_text.empty() ? io::parse_log_map(map_text, "map")
+                                           : LogMap{};
+    const std::vector<std::filesystem::path> paths(files.begin(), files.end());
+    log = io::read_log(paths, map, {[&](std::uint64_t) { job.step_or_stop(); }});
+    facts = facts_of(log);
+    rows = LogWindows(log, window_s).rows();
+  });
+  const std::size_t n = rows.n_windows(), n_sensors = rows.sensors.size();
+  nb::dict result = times(LogWindows(log, window_s));
+  result["sensors"] = nb::tuple(to_python(rows.sensors));
+  result["motion"] = to_numpy(std::move(rows.motion), {n, n_sensors});
+  result["people_means"] = rows.people_mean == LogMap::People::presence ? "presence" : "count";
+  result["people"] = log.people ? to_numpy(std::move(rows.people), {n}) : nb::none();
+  result["window_s"] = rows.window_s;
+  result["clock"] = nb::str(log.clock == LogClock::elapsed ? "elapsed"
+                            : log.clock == LogClock::local ? "local"
+                                                           : "zoned");
+  result["interval_s"] = facts.interval_s;
+  result["map"] = to_python(io::to_yaml(log.map));
+  result["remarks"] = to_python(log.remarks);
+  result["facts"] = listed(facts.sensors, sensor);
+  result["pairs"] = listed(facts.pairs, [&](const LogPair& pair) {
+    return nb::make_tuple(to_python(facts.sensors[pair.a].name), to_python(facts.sensors[pair.b].name),
+                          to_python(pair.phi), to_python(pair.b_after_a_s), pair.n_together, pair.has_leader());
+  });
+  return result;
+}
 
 nb::object pair_of(const std::optional<Interval>& interval) {
   return interval ? nb::object(nb::make_tuple(interval->low, interval->high)) : nb::none();
 }
 
-template <typename Item, typename Tell>
-nb::list listed(std::vector<Item>& items, const Tell& tell) {
-  nb::list all;
-  for (Item& item : items) all.append(tell(item));
-  return all;
-}
-
 // -- counters --------------------------------------------------------------------------------------------------------
 
-/// Of all rooms one after the other: (rooms x ...).
+/// What `of` appends of each room: (rooms x ...).
 template <typename T, typename Of>
-nb::object of_rooms(const Counter& counter, const Of& of, std::initializer_list<std::size_t> shape) {
+nb::object of_rooms(const Counter& counter, std::initializer_list<std::size_t> shape, const Of& of) {
   std::vector<T> all;
   for (const counting::RoomModel& room : counter.rooms) of(room, all);
   return to_numpy(std::move(all), shape);
 }
 
 nb::object numbers_of(const Counter& counter) {
-  return of_rooms<std::int32_t>(counter, [](const auto& room, auto& all) { all.push_back(room.number); },
-                                {counter.rooms.size()});
+  return of_rooms<std::int32_t>(counter, {counter.rooms.size()},
+                                [](const auto& room, auto& all) { all.push_back(room.number); });
 }
 
 nb::object weights_of(const Counter& counter) {
-  return of_rooms<double>(counter, [](const auto& room, auto& all) { all.push_back(room.weight); },
-                          {counter.rooms.size()});
+  return of_rooms<double>(counter, {counter.rooms.size()},
+                          [](const auto& room, auto& all) { all.push_back(room.weight); });
 }
 
 nb::object first_of(const Counter& counter) {
-  return of_rooms<double>(
-      counter, [](const auto& room, auto& all) { all.insert(all.end(), room.first.begin(), room.first.end()); },
-      {counter.rooms.size(), static_cast<std::size_t>(counter.n_states())});
+  const auto n_states = static_cast<std::size_t>(counter.n_states());
+  return of_rooms<double>(counter, {counter.rooms.size(), n_states}, [](const auto& room, auto& all) {
+    all.insert(all.end(), room.first.begin(), room.first.end());
+  });
 }
 
 nb::object emissions_of(const Counter& counter) {
-  return of_rooms<double>(
-      counter, [](const auto& room, auto& all) { all.insert(all.end(), room.emissions.begin(), room.emissions.end()); },
-      {counter.rooms.size(), static_cast<std::size_t>(counter.n_states()),
-       static_cast<std::size_t>(counter.n_symbols())});
+  const auto n_states = static_cast<std::size_t>(counter.n_states());
+  const auto n_symbols = static_cast<std::size_t>(counter.n_symbols());
+  return of_rooms<double>(counter, {counter.rooms.size(), n_states, n_symbols}, [](const auto& room, auto& all) {
+    all.insert(all.end(), room.emissions.begin(), room.emissions.end());
+  });
 }
 
 nb::object moves_of(const Counter& counter) {
@@ -102,7 +171,7 @@ Counter train(const std::vector<nb::tuple>& days, const Settings& settings, unsi
 
 /// end_us: local time at each reading's end, or since the log's zero.
 LogRows readings_of(const Bits& bits, const std::optional<People>& people, std::vector<std::string> sensors,
-                    double step_s, const Times& end_us, bool has_clock) {
+                    double step_s, const Array<std::int64_t, 1>& end_us, bool has_clock) {
   LogRows rows;
   rows.sensors = std::move(sensors);
   rows.window_s = step_s;
@@ -131,7 +200,7 @@ nb::object told_readings(const Bits& motion, double step_s) {
   return to_numpy(std::vector<std::uint8_t>(told.begin(), told.end()), {told.size()});
 }
 
-std::string counts_csv(const LogRows& readings, const Probabilities& probabilities) {
+std::string counts_csv(const LogRows& readings, const Array<double, 2>& probabilities) {
   std::ostringstream text;
   calibrate::write_counts(text, {readings,
                                  {static_cast<int>(probabilities.shape(1)),
@@ -162,21 +231,9 @@ nb::list read_room_days(const std::string& folder, const std::string& part, doub
 
 // -- calibration -----------------------------------------------------------------------------------------------------
 
-const char* word_of(calibrate::Verdict verdict) {
-  switch (verdict) {
-    case calibrate::Verdict::like_these:
-      return "like-these";
-    case calibrate::Verdict::none_like_it:
-      return "none-like-it";
-    case calibrate::Verdict::too_little_told:
-      break;
-  }
-  return "too-little-told";
-}
-
 nb::dict told(calibrate::Calibration&& made) {
   nb::dict result;
-  result["verdict"] = word_of(made.verdict);
+  result["verdict"] = to_python(made.verdict);
   result["p"] = made.p;
   result["finding"] = calibrate::finding(made);
   result["effective_rooms"] = made.effective_rooms;
@@ -240,18 +297,18 @@ void add_counters(nb::module_& module) {
       .def_prop_ro("emissions", &emissions_of)
       .def(
           "write", [](const Counter& counter, const std::string& file) { counting::write_counter(file, counter); },
-          nb::arg("file"));
+          "file"_a);
   nb::class_<counting::LiveCount>(module, "LiveCount", "What pirsim.counting.LiveCount holds.")
-      .def(nb::init<const Counter&>(), nb::arg("counter"), nb::keep_alive<1, 2>())
+      .def(nb::init<const Counter&>(), "counter"_a, nb::keep_alive<1, 2>())
       .def(
           "next",
-          [](counting::LiveCount& live, const Row& bits) {
+          [](counting::LiveCount& live, const Array<std::uint8_t, 1>& bits) {
             std::vector<double> counts = live.next({bits.data(), bits.size()});
             const std::size_t n = counts.size();
             return to_numpy(std::move(counts), {n});
           },
-          nb::arg("bits"));
-  module.def("train_counter", &train, nb::arg("days"), nb::arg("settings"), nb::arg("threads"), "A Counter.");
+          "bits"_a);
+  module.def("train_counter", &train, "days"_a, "settings"_a, "threads"_a, "A Counter.");
   module.def(
       "read_counter_bytes",
       [](const std::string& file) {
@@ -262,38 +319,81 @@ void add_counters(nb::module_& module) {
         }
         return nb::bytes(bytes.data(), bytes.size());
       },
-      nb::arg("file"), "Of a file that isn't larger than a counter's may be.");
+      "file"_a, "Of a file that isn't larger than a counter's may be.");
   module.def(
       "parse_counter",
       [](const nb::bytes& bytes, const std::string& name) {
         return counting::parse_counter({bytes.c_str(), bytes.size()}, name);
       },
-      nb::arg("bytes"), nb::arg("name"), "A Counter.");
+      "bytes"_a, "name"_a, "A Counter.");
+}
+
+// -- light ------------------------------------------------------------------------------------------------------------
+
+template <typename To, typename From>
+void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) {
+  const From* begin = from.data() + row * from.shape(1);
+  to.assign(begin, begin + from.shape(1));
+}
+
+/// file, text: of the rule; the text counts where there is no file. Columns of rows, one after the other; clock:
+/// local time at each row's end, since 1970. Returns the costs as CSV, the lights, (row, light) 1 where it is
+/// lit, and remarks.
+nb::tuple control_light(const std::string& file, const std::string& text, std::vector<std::string> sensors,
+                        std::vector<std::string> areas, std::vector<std::string> doors, double window_s,
+                        Array<std::int32_t, 1> run, Array<double, 1> time_s, const std::vector<std::string>& clock,
+                        Array<std::int32_t, 1> people, Array<std::int32_t, 2> people_of_areas,
+                        Array<std::uint8_t, 2> door_open, Array<std::uint8_t, 2> bits) {
+  std::vector<std::uint8_t> lit;
+  std::vector<std::string> lights, remarks;
+  std::string costs;
+  attend(nb::none(), [&](Job&) {
+    const control::RuleSpec spec = file.empty() ? control::parse_rule(text, "rule") : control::read_rule(file);
+    for (const control::LightSpec& light : spec.lights) lights.push_back(light.id);
+    control::Control control(spec, {std::move(sensors), std::move(areas), std::move(doors)}, window_s);
+    Sample row;
+    for (std::size_t i = 0; i < bits.shape(0); ++i) {
+      row.replicate = run(i);
+      row.time_s = time_s(i);
+      if (!clock.empty()) row.clock = clock[i];
+      row.people = people(i);
+      copy_row(people_of_areas, i, row.people_of_areas);
+      copy_row(door_open, i, row.doors);
+      copy_row(bits, i, row.bits);
+      const control::LitRow now = control.add(row);
+      lit.insert(lit.end(), now.lit.begin(), now.lit.end());
+    }
+    const control::Costs finished = control.finish();
+    for (const Issue& remark : finished.remarks) remarks.push_back(remark.message);
+    costs = control::to_csv(finished);
+  });
+  const std::size_t n_lights = lights.size();
+  return nb::make_tuple(costs, lights, to_numpy(std::move(lit), {bits.shape(0), n_lights}), remarks);
 }
 
 }  // namespace
 
-void add_counting(nb::module_& module) {
+void add_logs(nb::module_& module) {
+  module.def("read_log", &read, "files"_a, "map_file"_a, "map_text"_a, "window_s"_a, "Parts of pirsim.Log, by name.");
   add_counters(module);
   nb::class_<LogRows>(module, "Readings", "A log in readings of one length.");
   nb::class_<calibrate::LogTraits>(module, "LogTraits", "What a counter remembers of a log.")
-      .def(
-          "__init__",
-          [](calibrate::LogTraits* self, double interval_s, std::vector<std::string> sensors,
-             std::vector<std::optional<double>> holds_s) {
-            new (self) calibrate::LogTraits{interval_s, std::move(sensors), std::move(holds_s)};
-          },
-          nb::arg("interval_s"), nb::arg("sensors"), nb::arg("holds_s"));
-  module.def("readings", &readings_of, nb::arg("bits"), nb::arg("people").none(), nb::arg("sensors"), nb::arg("step_s"),
-             nb::arg("end_us"), nb::arg("has_clock"), "Readings of arrays.");
-  module.def("estimate", &estimate, nb::arg("counter"), nb::arg("readings"), nb::arg("log"), nb::arg("smoothed"),
+      .def(nb::init<double, std::vector<std::string>, std::vector<std::optional<double>>>(), "interval_s"_a,
+           "sensors"_a, "holds_s"_a);
+  module.def("readings", &readings_of, "bits"_a, "people"_a.none(), "sensors"_a, "step_s"_a, "end_us"_a, "has_clock"_a,
+             "Readings of arrays.");
+  module.def("estimate", &estimate, "counter"_a, "readings"_a, "log"_a, "smoothed"_a,
              "Probabilities of counts, an array, and remarks.");
-  module.def("told_readings", &told_readings, nb::arg("motion"), nb::arg("step_s"), "0 or 1, an array.");
-  module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"), "As pirsim count writes them.");
-  module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("step_s"),
-             nb::arg("threads"), "Days of a dataset, as tuples.");
-  module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("traits"), nb::arg("settings"),
-             nb::arg("threads"), "Parts of pirsim.counting.Calibration, by name.");
+  module.def("told_readings", &told_readings, "motion"_a, "step_s"_a, "0 or 1, an array.");
+  module.def("counts_csv", &counts_csv, "readings"_a, "probabilities"_a, "As pirsim count writes them.");
+  module.def("read_room_days", &read_room_days, "folder"_a, "part"_a, "step_s"_a, "threads"_a,
+             "Days of a dataset, as tuples.");
+  module.def("calibrate", &calibrated, "pool"_a, "log"_a, "traits"_a, "settings"_a, "threads"_a,
+             "Parts of pirsim.counting.Calibration, by name.");
+  module.def(
+      "control_light", &control_light, nb::kw_only(), "file"_a, "text"_a, "sensors"_a, "areas"_a, "doors"_a,
+      "window_s"_a, "run"_a, "time_s"_a, "clock"_a, "people"_a, "people_of_areas"_a, "door_open"_a, "bits"_a,
+      "(costs as CSV, lights, lit [row, light], remarks) of a rule's file or else its text, by columns of rows.");
 }
 
 }  // namespace pirsim::python

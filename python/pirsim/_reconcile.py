@@ -1,41 +1,18 @@
-"""Datasets of many rooms and days, and model against measurement."""
+"""Model against measurement."""
 
 from __future__ import annotations
 
 import csv
 import io
 import os
-import warnings
 from dataclasses import dataclass, field
 from typing import Any, Iterable, NamedTuple
 
 from . import _core
-from ._files import keep_inputs
+from ._inputs import (Overrides, PathOr, Progress, as_count, as_input, as_overrides, as_path, as_seed, as_threads,
+                      folders, keep_inputs, warn_of)
 from ._result import Result
-from ._study import (Overrides, PathOr, Progress, as_count, as_file, as_input, as_overrides, as_path, as_seed, as_threads,
-                     folders)
-from .errors import InputWarning
 from .specs import Effect, Scene, Script
-
-
-def dataset(recipe: PathOr, folder: PathOr, *, set: Overrides | None = None, resume: bool = False,
-            sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
-            progress: Progress | None = None) -> None:
-    """Makes a dataset of many rooms and days from a recipe's YAML file (docs/formats/dataset.md).
-
-    folder: gets a file of rows for each room and day, tables, datapackage.json and a README. set: values to replace in
-    the recipe, {"sensing.response": "zones"}. resume: keeps the days that are there already, as after Ctrl-C. progress is
-    told in days of rooms.
-    """
-    told = _core.dataset(as_file(recipe, "recipes"), as_path(folder), as_overrides(set), *folders(sensors), resume,
-                         as_threads(threads), progress)
-    for diagnostic in told:
-        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
-
-
-def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
-    """Room `number` (from 1) of a dataset's recipe: always the same for the same recipe."""
-    return _core.room(as_file(recipe, "recipes"), as_count(number, "number", -2**31, 2**31 - 1), *folders(sensors))
 
 
 class FittedEffect(NamedTuple):
@@ -135,9 +112,8 @@ def reconcile(scene: PathOr | Scene, script: PathOr | Script, measured: PathOr |
                 [(name, file) for name, file in given if isinstance(file, (str, os.PathLike))])
     name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (as_path(measured), "")
     parts = _core.reconcile(as_input(scene, Scene), as_input(script, Script, set), name, text, as_overrides(set),
-                            *folders(sensors), question, as_seed(seed), as_threads(threads), progress)
-    for text in parts.pop("warnings"):
-        warnings.warn(text, InputWarning, stacklevel=2)
+                            folders(sensors), question, as_seed(seed), as_threads(threads), progress)
+    warn_of(parts.pop("warnings"))
     parts["fits"] = [FittedEffect(*fit) for fit in parts["fits"]]
     parts["candidates"] = [Candidate(*candidate) for candidate in parts["candidates"]]
     parts["cells"] = [Cell(*cell) for cell in parts["cells"]]

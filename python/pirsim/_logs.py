@@ -1,10 +1,11 @@
-"""Logs of real sensors, as arrays."""
+"""Logs of real sensors, as arrays, and what lights cost that sensors switch."""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
-import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Literal, Mapping, NamedTuple
@@ -13,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._study import PathOr, as_path
-from .errors import InputWarning
+from ._inputs import PathOr, as_path, warn_of
+from ._result import Result
 
 if TYPE_CHECKING:
     import pandas
@@ -137,11 +138,11 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     window_s: length of the windows. Raises FileError and InputError; what is odd is an InputWarning.
     """
     files = [file] if isinstance(file, (str, bytes)) or hasattr(file, "__fspath__") else list(file)
-    is_dict = isinstance(map, Mapping)
-    found = _core.read_log([as_path(one) for one in files], "" if map is None or is_dict else as_path(map),  # type: ignore[arg-type]
-                           json.dumps({"pirsim_log": 1, **map}) if is_dict else "", float(window_s))  # type: ignore[dict-item]
-    for diagnostic in found["remarks"]:
-        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
+    keys = json.dumps({"pirsim_log": 1, **map}) if isinstance(map, Mapping) else ""
+    map_files = [] if map is None or isinstance(map, Mapping) else [map]
+    found = _core.read_log([as_path(one) for one in files], as_path(map_files[0]) if map_files else "", keys,
+                           float(window_s))
+    warn_of(found["remarks"])
     utc_us, is_elapsed = found["utc_us"], found["clock"] == "elapsed"
     zero_us = 0 if is_elapsed or not len(utc_us) else int(utc_us[0]) - round(1e6 * found["window_s"])
     arrays = {"time": found["local_us"].view("datetime64[us]"), "time_s": (utc_us - zero_us) / 1e6}
@@ -154,4 +155,86 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
                utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
                map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),
-               people_means=found["people_means"], is_elapsed=is_elapsed, _files=tuple(os.path.abspath(one) for one in files + ([] if map is None or is_dict else [map])))
+               people_means=found["people_means"], is_elapsed=is_elapsed,
+               _files=tuple(os.path.abspath(one) for one in [*files, *map_files]))
+
+
+# -- light -----------------------------------------------------------------------------------------------------------
+
+@dataclass(frozen=True, eq=False)
+class LightCosts:
+    """What lights cost at every delay, and when they are lit. All arrays are read-only."""
+
+    lights: tuple[str, ...]
+    columns: dict[str, npt.NDArray[Any]]
+    """[light and delay] `light`, `delay_min`, `false_offs_an_hour`, `dark_share`, `lit_h` and so on, as `pirsim control -o`
+    writes them; NaN where nothing is known."""
+    lit: npt.NDArray[np.uint8]
+    """[run, second, light] 1 where it is lit, by the light's first delay; 0 behind the end of a run."""
+
+    def __repr__(self) -> str:
+        lines = [f"<pirsim.LightCosts: {', '.join(self.lights)}"]
+        for light in self.lights:
+            for delay in (1, 5, 10, 20):
+                at = self.at(delay, light)
+                lines.append(f"  {light}, {delay} min: off on somebody {at['false_offs_an_hour']:.2f} times an occupied "
+                             f"hour, dark {100 * at['dark_share']:.1f} % of it, lit and empty {at['lit_empty_h']:.1f} h")
+        return "\n".join(lines) + ">"
+
+    def at(self, delay_min: float, light: str | None = None) -> dict[str, Any]:
+        """The figures of one delay; of the only light, or of this one. Raises KeyError for what isn't there."""
+        wanted = light if light is not None else self.lights[0]
+        found = np.nonzero((self.columns["light"] == wanted) & (self.columns["delay_min"] == delay_min))[0]
+        if len(found) == 0:
+            raise KeyError(f"no light {wanted!r} with a delay of {delay_min:g} min")
+        return {name: values[found[0]].item() for name, values in self.columns.items()}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a light and delay."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns)
+
+
+def control(result: Result, rule: PathOr | Mapping[str, Any] | None = None) -> LightCosts:
+    """Switches light by what sensors reported, and says what each delay costs.
+
+    rule: a file, or the same keys as a dict: `{"lights": [{"area": "office", "delay_min": 5}]}`
+    (docs/formats/control.md). None: one light, by any sensor. A run is a day.
+
+    Raises InputError for a rule that isn't one or doesn't fit the rows, and FileError. What the rows lack for it is an
+    InputWarning.
+    """
+    if rule is None or isinstance(rule, Mapping):
+        keys: dict[str, Any] = {"pirsim_control": 1, "lights": [{}], **(rule or {})}
+        file, text = "", json.dumps(keys)
+    else:
+        file, text = as_path(rule), ""
+    run, second = np.nonzero(result.valid)
+    window_s = float(result.time[0]) if len(result.time) else 1.0
+    clock = [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist()
+    table, lights, rows, remarks = _core.control_light(
+        file=file,
+        text=text,
+        sensors=list(result.sensors),
+        areas=list(result.areas),
+        doors=list(result.doors),
+        window_s=window_s,
+        run=run.astype(np.int32),
+        time_s=np.ascontiguousarray(result.time[second], dtype=np.float64),
+        clock=clock,
+        people=result.people[run, second].astype(np.int32),
+        people_of_areas=np.ascontiguousarray(result.people_of_areas[run, second], dtype=np.int32),
+        door_open=np.ascontiguousarray(result.door_open[run, second], dtype=np.uint8),
+        bits=np.ascontiguousarray(result.bits[run, second], dtype=np.uint8))
+    warn_of(remarks)
+    lit = np.zeros((*result.valid.shape, len(lights)), dtype=np.uint8)
+    lit[run, second] = rows
+    lit.flags.writeable = False
+    lines = list(csv.DictReader(io.StringIO(table)))
+    columns: dict[str, npt.NDArray[Any]] = {}
+    for column in lines[0]:
+        values = [line[column] for line in lines]
+        columns[column] = np.array(values if column == "light" else [float(value or "nan") for value in values])
+        columns[column].flags.writeable = False
+    return LightCosts(tuple(lights), columns, lit)
