@@ -319,6 +319,49 @@ TEST_CASE("A counter refuses a log that it isn't for, and tells of sensors that 
   CHECK_THROWS_AS(counts(), Error);
 }
 
+TEST_CASE("A log is counted without a look at the people that it tells: whatever it says, counts stay") {
+  std::mt19937 random(9);
+  const PoolRoom room = room_of(random, 1, 0.3);
+  const counting::Counter counter = counting::train(std::vector{room.labelled}, {});
+  const Stretch& day = room.labelled.days[0];
+  LogRows rows{{"a", "b"}, 30.0, LogClock::local, {}, day.motion, {}};
+  for (std::size_t i = 0; i < day.n_readings(); ++i)
+    rows.begin.push_back({static_cast<std::int64_t>(i) * 30'000'000, 0});
+  const LogTraits log{0.0, rows.sensors, {}};
+  for (const counting::Pass pass : {counting::Pass::forward, counting::Pass::smoothed}) {
+    const LogCounts untold = count_log(counter, rows, log, pass);
+    CHECK_FALSE(error_of(untold));
+    for (const int told : {0, 1}) {
+      LogRows labelled = rows;
+      labelled.people.assign(day.n_readings(), told);
+      const LogCounts counts = count_log(counter, labelled, log, pass);
+      CHECK(counts.estimates.probabilities == untold.estimates.probabilities);
+      REQUIRE(error_of(counts));
+      CHECK(error_of(counts)->mean > 0.0);
+    }
+  }
+}
+
+TEST_CASE("A reading of a dataset's rows has motion if any row has, and the people of its last one") {
+  std::mt19937 random(10);
+  dataset::RoomDayRows rows{1, 1, 10.0, {"a", "b"}, {}, {}};
+  constexpr std::size_t n = 20, per = 3;
+  for (std::size_t i = 0; i < n * per + 2; ++i) {  // two rows more than whole readings
+    rows.people.push_back(static_cast<int>(random() % 5));
+    for (int k = 0; k < 2; ++k) rows.motion.push_back(random() % 4 == 0 ? 1 : 0);
+  }
+  const Stretch stretch = readings_of(rows, 30.0);
+  REQUIRE(stretch.n_readings() == n);
+  REQUIRE(stretch.people.size() == n);
+  for (std::size_t i = 0; i < n; ++i) {
+    CHECK(stretch.people[i] == rows.people[per * i + 2]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto bit = [&](std::size_t row) { return rows.motion[2 * (per * i + row) + k] == 1; };
+      CHECK((stretch.motion[2 * i + k] == 1) == (bit(0) || bit(1) || bit(2)));
+    }
+  }
+}
+
 TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
   LogCounts counts;
   counts.rows.sensors = {"a"};

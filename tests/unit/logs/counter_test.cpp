@@ -1,6 +1,7 @@
 // Hidden Markov counters against sums over all paths, and against a room that is made of a known one.
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -326,6 +327,32 @@ TEST_CASE("A log weighs the rooms that are like it, and counting there gets bett
   CHECK(lively_weight > 0.75);  // one in two by chance
   CHECK(error_of(counter, real, Pass::forward) < alike);
   CHECK(error_of(counter, real, Pass::smoothed) < error_of(counter, real, Pass::forward));
+}
+
+TEST_CASE("Rooms weigh as their likelihoods of a log to the power of the settings, a fifth as they come") {
+  std::mt19937 random(11);
+  for (const double power : {Settings{}.weight_power, 1.0, 0.5}) {
+    Counter counter = random_counter(random, 4);
+    counter.settings.weight_power = power;
+    const std::vector<Stretch> log{random_stretch(random, 5, 2), random_stretch(random, 4, 2, 2)};
+    std::vector<double> expected;  // power 1: what Bayes says of rooms that are as likely before
+    for (const RoomModel& room : counter.rooms) {
+      double likelihood = 1.0;
+      for (const Stretch& stretch : log) likelihood *= over_all_paths(counter, room, stretch).likelihood;
+      expected.push_back(std::pow(likelihood, power));
+    }
+    const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+    weigh(counter, log_likelihoods(counter, log));
+    for (std::size_t r = 0; r < expected.size(); ++r)
+      CHECK(counter.rooms[r].weight == Approx(expected[r] / sum).epsilon(1e-10));
+  }
+  CHECK(Settings{}.weight_power == 0.2);
+  // Of logs so long that no likelihood can be told from 0, and of one that a room can't have made.
+  Counter counter = random_counter(random, 3);
+  weigh(counter, std::vector{-100000.0, -100010.0, -std::numeric_limits<double>::infinity()});
+  CHECK(counter.rooms[0].weight == Approx(1.0 / (1.0 + std::exp(-2.0))).epsilon(1e-12));
+  CHECK(counter.rooms[1].weight == Approx(1.0 / (1.0 + std::exp(2.0))).epsilon(1e-12));
+  CHECK(counter.rooms[2].weight == 0.0);
 }
 
 TEST_CASE("A counter is written and read back as it is, and what isn't one is refused in a line") {

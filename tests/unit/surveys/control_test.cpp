@@ -113,6 +113,7 @@ TEST_CASE("light by hand: timers that run out, least times, doors, switches and 
   CHECK(lit(manual, 1.0, "1110000000", "0000000000") == "0000000000");  // motion alone switches nothing on
   CHECK(lit(manual, 2.0, "0000000000", "0111100000") == "0001110000");  // the switch after two minutes
   CHECK(lit(manual, 1.0, "0000001000", "0111000000") == "0001101100");  // motion within the grace
+  CHECK(lit(manual, 1.0, "0000000100", "0111000000") == "0001100110");  // at its end
   CHECK(lit(manual, 1.0, "0000000010", "0111000000") == "0001100000");  // and after it
   LightSpec night;
   night.night = NightSpec{22.0, 6.0, 0.0};

@@ -121,6 +121,25 @@ TEST_CASE("scattered seats are taken with the scatter's spread") {
   CHECK_FALSE(std::abs(variance - 1.5 * sd * sd) < 4.0 * standard_error);  // must fail
 }
 
+TEST_CASE("a scatter of seats adds to the script's own as variances do") {
+  ScriptSpec script = short_study_a();
+  for (TrialSpec& trial : script.trials) trial.people.front().seat_scatter = {0.03, 5.0};
+  const Model model =
+      compile(shipped_scene("meeting_room.gltf"),
+              with(script, {bare_effect("seat_scatter", {{"position_sd_m", 0.04}, {"heading_sd_deg", 12.0}})}));
+  const SeatScatterSpec& scatter = model.compiled().trials()[0].people[0].spec.seat_scatter;
+  CHECK(scatter.position_sd_m == Approx(0.05));
+  CHECK(scatter.heading_sd_deg == Approx(13.0));
+}
+
+TEST_CASE("a scaled body is as stout: all of it is scaled, its mass by the cube") {
+  const Model plain = meeting_room({}), small = meeting_room({bare_effect("body_size", {{"scale", 0.8}})});
+  const auto who = [](const Model& model) { return model.compiled().trials()[0].people[0]; };
+  CHECK(who(small).spec.mass_kg == Approx(0.512 * who(plain).spec.mass_kg));
+  for (const body::Part part : {body::Part::head, body::Part::left_forearm, body::Part::left_thigh})
+    CHECK(who(small).humanoid.radius_m(part) == Approx(0.8 * who(plain).humanoid.radius_m(part)));
+}
+
 TEST_CASE("a scaled body has scaled lengths") {
   const Model plain = meeting_room({}), small = meeting_room({bare_effect("body_size", {{"scale", 0.8}})});
   const auto head_m = [](const Model& model) {

@@ -97,6 +97,25 @@ TEST_CASE("somebody who crosses a soft edge is noticed with the probability of t
   // Seven levels: within half a step at either end, and the spread of 20,000 draws (standard error 0.0035).
   CHECK(largest_error < 1.0 / 7.0 + 4.0 * 0.0035);
   CHECK_FALSE(largest_error_of_hard_edges < 1.0 / 7.0 + 4.0 * 0.0035);  // must fail
+
+  // An edge is drawn for a window: all ticks of one notice the same step, or none does, also after ticks of rest.
+  constexpr int ticks = 5, windows = 400;
+  pir::SoftEdges by_window(detector, levels.size(), {sigma_deg, EdgeRule::drawn_edge}, ticks, 0.02);
+  by_window.begin_run(2, 0, ZoneSet(detector.n_channels()));
+  const ZoneSet before = channels_at(edge - 0.7 * sigma), after = channels_at(edge + 0.7 * sigma);
+  int windows_noticed = 0;
+  for (int window = 0; window < windows; ++window) {
+    int noticed = 0;
+    for (int tick = 0; tick < ticks; ++tick) {
+      std::array<std::uint8_t, 1> bits{};
+      tick == 2 ? by_window.tick_unchanged(after, bits) : by_window.tick(before, after, bits);
+      noticed += bits[0];
+    }
+    CHECK((noticed == 0 || noticed == ticks - 1));
+    windows_noticed += noticed > 0;
+  }
+  CHECK(windows_noticed > windows / 4);
+  CHECK(windows_noticed < 3 * windows / 4);
 }
 
 TEST_CASE("with soft edges somebody who sits still triggers nothing") {

@@ -2,6 +2,8 @@
 // seen.
 #include "engine/sim/pedestrian.hpp"
 
+#include <set>
+#include <span>
 #include <sstream>
 
 #include "engine/sim/observer.hpp"
@@ -251,6 +253,35 @@ TEST_CASE("a shut leaf hides who is behind it from a sensor that sees them throu
   };
   CHECK_FALSE(seen_behind(DoorState::shut));
   CHECK(seen_behind(DoorState::open));
+}
+
+TEST_CASE("what is remembered of people who stand still is how they looked while the leaf stood as it does now") {
+  for (const std::size_t n_people : {1U, 2U}) {
+    std::vector<PersonSpec> people{person("P", {act(action::Appear{{1.5, 0.0}, 0.0}), act(action::Wait{20.0})}),
+                                   person("Q", {act(action::Appear{{2.0, 1.2}, 0.0}), act(action::Wait{20.0})})};
+    people.resize(n_people);
+    ScriptSpec script = script_of(people);
+    script.sensing.response = Response::analog;
+    const Model model = compile(two_rooms({inner_door(DoorState::shut)}), script);
+    const sim::SensorArray& array = model.compiled().array();
+    sim::RunState state(model.compiled(), 0);
+    sim::move_tick(model.compiled(), state);
+    const std::vector<sim::Actor>& actors = state.crowd.actors();
+    const LeafStep open = array.leaves().front().open_step(), half = open / 2;
+    sim::Observer observer(array, TracerKind::direct, sim::ZonesOf::all_sensors);
+    sim::Exposure seen = array.unexposed(), anew = seen;
+    std::set<std::vector<sim::PowerSteps>> powers;
+    for (const LeafStep step : {LeafStep{0}, open, LeafStep{0}, half, open, half}) {
+      observer.look(actors, std::span(&step, 1), seen);
+      // Who has seen nothing before, and tests every ray against everybody.
+      sim::Observer(array, TracerKind::reference, sim::ZonesOf::all_sensors).look(actors, std::span(&step, 1), anew);
+      INFO(n_people << " people, step " << step);
+      CHECK(seen.zones == anew.zones);
+      CHECK(seen.powers == anew.powers);
+      powers.insert(anew.powers);
+    }
+    CHECK(powers.size() > 1);  // the leaf does hide them
+  }
 }
 
 TEST_CASE("tracers agree on runs with doors, by zones and by power, and so do copies of a state") {

@@ -1,5 +1,6 @@
 // Rows from recordings are those of the study, whatever the sensors' responses and electronics.
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <set>
@@ -11,6 +12,7 @@
 #include "pirsim/random.hpp"
 #include "pirsim/state.hpp"
 #include "support/catch.hpp"
+#include "support/door_scene.hpp"
 #include "support/effects.hpp"
 
 using namespace pirsim;
@@ -323,4 +325,25 @@ TEST_CASE("a recording is refused to a model whose optics it doesn't tell") {
   ScriptSpec slower = script;
   slower.sensing.tick_rate_hz = 25;
   check_refused(scene, slower);
+}
+
+TEST_CASE("a recording is refused where a wall or a leaf alone ends the same rays elsewhere") {
+  const auto ends = [](const Model& model) { return model.compiled().array().range(); };
+  for (const Response response : {Response::zones, Response::analog}) {
+    ScriptSpec script = script_of({person("P", {act(action::Appear{{1.5, 0.0}, 0.0}), act(action::Wait{2.0})})});
+    script.sensing.response = response;
+    SceneSpec wider = two_rooms({});
+    for (Vec3& at : std::ranges::find(wider.meshes, "north", &TriMesh::name)->positions) at.z += 0.2;
+    const std::vector<std::pair<SceneSpec, SceneSpec>> pairs{
+        {two_rooms({}), wider}, {two_rooms({inner_door(DoorState::shut)}), two_rooms({inner_door(DoorState::open)})}};
+    for (const auto& [scene, other_scene] : pairs) {
+      const Model model = compile(scene, script), other = compile(other_scene, script);
+      const auto same_bytes = [](const Ray& a, const Ray& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
+      REQUIRE(std::ranges::equal(model.rays().rays, other.rays().rays, same_bytes));
+      REQUIRE(ends(model) != ends(other));
+      const Recording recording = record(model, std::vector<std::uint32_t>{0});
+      CHECK(same_rows(emitted(compile(scene, script), recording), results_of(model)));
+      CHECK_THROWS_WITH(emitted(other, recording), contains("other optics"));
+    }
+  }
 }

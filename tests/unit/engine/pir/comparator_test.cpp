@@ -55,6 +55,15 @@ TEST_CASE("while blind no pulse counts and one that goes on afterwards does not 
           "#.....#........#..");
 }
 
+TEST_CASE("blind time lasts until its last tick and no longer") {
+  for (const double blind_s : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) {  // off at tick 1, then blind for so many
+    INFO(blind_s);
+    const auto last = static_cast<std::size_t>(std::lround(10.0 * blind_s)) + 1;
+    CHECK(output({}, "+" + std::string(last - 1, '.') + "+", {.blind_s = blind_s}) == "#" + std::string(last, '.'));
+    CHECK(output({}, "+" + std::string(last, '.') + "+", {.blind_s = blind_s}) == "#" + std::string(last, '.') + "#");
+  }
+}
+
 TEST_CASE("hold and then blind time follow each other") {
   REQUIRE(output({}, "+....+..+...", {.hold_s = 0.2, .blind_s = 0.3}) ==  //
           "###.....###.");
