@@ -299,6 +299,27 @@ TEST_CASE("the exports say what the rows say", "[dataset][seconds]") {
   }
 }
 
+TEST_CASE("a row that ends on the hour counts for the hour before", "[dataset]") {
+  const Made made(
+      "pirsim_recipe: 1\nrooms: [{count: 1, seats: 2, people: 2}]\ndays: 1\nsensing: {tick_rate_hz: 10, response: "
+      "zones}\nschedule: {from: \"08:56\", to: \"09:00\", arrival: {mean: \"08:57\", sd_min: 0.1}, staff: [{count: "
+      "2}]}\n");
+  const Room room(1, room_of(made.recipe, 1, test::shipped_sensors()), {});
+  ColumnOwners columns;
+  for (const SensorSpec& sensor : room.scene().sensors) columns.sensors.push_back(sensor.id);
+  const RoomDay day = simulate(made.recipe, room, 1, columns);
+  REQUIRE(day.record.rows == 240);
+  double present = 0.0, people = 0.0;
+  for (const auto& [n, rows] : day.record.rows_by_people) {
+    present += n > 0 ? static_cast<double>(rows.all) : 0.0;
+    people += n * static_cast<double>(rows.all);
+  }
+  CHECK(present > 60.0);
+  CHECK(day.record.presence[8] == Approx(present / 240.0));
+  CHECK(day.record.people[8] == Approx(people / 240.0));
+  CHECK(day.record.presence[9] == 0.0);
+}
+
 TEST_CASE("a year of an EnergyPlus schedule takes days of a weekday by turns", "[dataset]") {
   RoomProfile room{"r", {}};
   for (int k = 1; k <= 2; ++k) {

@@ -147,6 +147,31 @@ void check_doors(const DrawnFlat& flat) {
   }
 }
 
+/// Inner doors hang on the side of the nearer wall, if one is nearer by far. Gives how many were looked at.
+int check_hinges(const DrawnFlat& flat) {
+  int looked_at = 0;
+  for (const DoorSpec& door : flat.scene.doors) {
+    const auto before = room_at(flat, floor_point(door.world_from_door * Vec3(0.0, 0.0, 0.5)));
+    const auto behind = room_at(flat, floor_point(door.world_from_door * Vec3(0.0, 0.0, -0.5)));
+    if (!before || !behind) continue;
+    const auto from_wall_m = [&](double aside_m) {  // along the wall that the door is in, which follows x
+      const double x = (door.world_from_door * Vec3(aside_m, 0.0, 0.0)).x;
+      double nearest = 1e9;
+      for (const std::size_t room : {*before, *behind}) {
+        const Rectangle& area = flat.rooms[room].area;
+        nearest = std::min({nearest, std::abs(x - area.lower.x), std::abs(x - area.upper.x)});
+      }
+      return nearest;
+    };
+    const double left_m = from_wall_m(-0.5 * door.width_m), right_m = from_wall_m(0.5 * door.width_m);
+    if (std::abs(left_m - right_m) < 0.31) continue;
+    INFO(door.id << ": " << left_m << " m to the left, " << right_m << " m to the right");
+    CHECK(door.hinge == (left_m < right_m ? DoorHinge::left : DoorHinge::right));
+    ++looked_at;
+  }
+  return looked_at;
+}
+
 void check_reach(const DrawnFlat& flat) {
   const FlatFlood flood(flat);
   for (const SeatSpec& seat : flat.scene.seats) {
@@ -185,8 +210,10 @@ std::string flat_faults(const std::string& text) {
 TEST_CASE("fifty flats: all places are reached, areas share the floor out, doors join rooms", "[flat][seconds]") {
   std::set<int> tries;
   std::set<std::size_t> sizes;
+  int hinges = 0;
   for (int number = 1; number <= 50; ++number) {
     const DrawnFlat flat = drawn_flat(any_flat(), number);
+    hinges += check_hinges(flat);
     INFO("flat " << number << ", try " << flat.tries);
     tries.insert(flat.tries);
     sizes.insert(flat.rooms.size());
@@ -206,6 +233,7 @@ TEST_CASE("fifty flats: all places are reached, areas share the floor out, doors
   }
   CHECK(tries.size() > 1);  // the checks do refuse some
   CHECK(sizes.size() > 3);
+  CHECK(hinges > 25);
 }
 
 TEST_CASE("a flat depends on its seed and number and on nothing else", "[flat]") {

@@ -105,6 +105,34 @@ TEST_CASE("a sitter right under the needle covers it for good: seen in every try
   CHECK(WalkTester(still).try_point({1.5, 0.0}, 0).minor.deaf == 0);
 }
 
+TEST_CASE("who sits at a seat faces as the seat does: the same from all sides of the needle, nothing facing away",
+          "[walk]") {
+  SceneSpec scene = needle_over_the_middle();
+  constexpr int n_sides = 4, n_distances = 25;
+  for (const double facing : {0.0, pi}) {  // towards the needle, then away from it
+    for (int i = 0; i < n_distances; ++i) {
+      for (int side = 0; side < n_sides; ++side) {
+        const double heading = 0.5 * pi * side;
+        const Vec3 at = rotation_from_heading(heading) * Vec3(0.2, 0.5, 0.3 + 0.02 * i);
+        scene.seats.push_back(
+            {"S" + std::to_string(scene.seats.size()), Frame{rotation_from_heading(heading + facing), at}});
+      }
+    }
+  }
+  WalkTestSpec spec = four_walks(2.0);
+  spec.spacing_m = 6.0;
+  const WalkTest test(scene, spec);
+  const WalkTestResult result = run_walk_test(test, 1);
+  int noticed = 0, away = 0;
+  for (int i = 0; i < 2 * n_distances; ++i) {
+    const auto of_side = [&](int side) { return result.seats[static_cast<std::size_t>(n_sides * i + side)].noticed; };
+    for (int side = 1; side < n_sides; ++side) CHECK(of_side(side) == of_side(0));
+    (i < n_distances ? noticed : away) += of_side(0) ? 1 : 0;
+  }
+  CHECK(noticed > 0);
+  CHECK(away == 0);
+}
+
 TEST_CASE("a walk test gives the same result for any number of threads, and says so point by point", "[walk]") {
   WalkTestSpec spec = four_walks(2.0);
   spec.spacing_m = 0.8;

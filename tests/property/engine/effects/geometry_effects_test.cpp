@@ -121,6 +121,30 @@ TEST_CASE("scattered seats are taken with the scatter's spread") {
   CHECK_FALSE(std::abs(variance - 1.5 * sd * sd) < 4.0 * standard_error);  // must fail
 }
 
+TEST_CASE("a scatter of headings moves nobody's place, at the first seat and at the next") {
+  const auto places = [](double heading_sd_deg) {
+    ScriptSpec script = script_of({person(
+        "P", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Wait{1.0}), act(action::Sit{"S10"}),
+              act(action::Wait{1.0}), act(action::Sit{"S3"}), act(action::Wait{1.0})})});
+    script.trials.front().people.front().seat_scatter = {0.05, heading_sd_deg};
+    const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+    State state(model, 0);
+    std::vector<Vec2> sat;
+    bool was_seated = false;
+    while (step_tick(model, state) || !state.finished()) {
+      const auto& actor = state.run_state().crowd.actors().front();
+      const bool is_seated = actor.present() && actor.motion().stage() == body::Stage::seated;
+      if (is_seated && !was_seated) sat.push_back(actor.motion().position());
+      was_seated = is_seated;
+    }
+    return sat;
+  };
+  const std::vector<Vec2> straight = places(0.0), turned = places(3.0);
+  REQUIRE(straight.size() == 3);
+  REQUIRE(turned.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(glm::distance(straight[i], turned[i]) < 1e-6);
+}
+
 TEST_CASE("a scatter of seats adds to the script's own as variances do") {
   ScriptSpec script = short_study_a();
   for (TrialSpec& trial : script.trials) trial.people.front().seat_scatter = {0.03, 5.0};
