@@ -19,7 +19,7 @@ const std::string rows =
 const std::vector<std::string> trials{"S1", "S \"2\"\nb"};
 
 RowTally tally_of(std::string_view text, std::size_t piece) {
-  RowTally tally(trials, {{"working"}, {}}, {});
+  RowTally tally(trials, {{"working"}, {}, {}}, {});
   for (std::size_t i = 0; i < text.size(); i += piece) tally.add(text.substr(i, piece));
   return tally;
 }
@@ -46,7 +46,7 @@ TEST_CASE("a tally of rows counts each run whatever the pieces they come in", "[
 }
 
 TEST_CASE("a tally of rows with areas counts people in them and no area as a sensor", "[summary]") {
-  RowTally tally({"S1"}, {{"working"}, {}}, {});
+  RowTally tally({"S1"}, {{"working"}, {}, {}}, {});
   tally.add(
       "replicate,trial,time_s,phase,people,people_hall,people_elsewhere,PIR1\n"
       "1,S1,1,walking,9,9,0,1\n1,S1,2,working,3,1,2,1\n1,S1,3,working,2,0,2,0\n2,S1,1,working,0,0,0,1\n");

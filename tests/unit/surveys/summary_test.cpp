@@ -89,7 +89,7 @@ TEST_CASE("runs add up per trial and sensor", "[summary]") {
 }
 
 TEST_CASE("a run's counts take the rows of the named phases", "[summary]") {
-  RunCounts counts(2, {{"work"}, ""});
+  RunCounts counts(2, {{"work"}, "", {}});
   const auto row = [](const char* phase, std::uint8_t a, std::uint8_t b) {
     return Sample{1, "S1", 1.0, phase, 1, {a, b}};
   };
