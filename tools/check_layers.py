@@ -28,13 +28,14 @@ ROOMS = {
         "report": {"data", "ensemble", "inference", "selftest"},
     },
 }
-# public header -> the house that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
+# public header -> the house, and room, that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
 PUBLIC = {
-    "error": "model", "input_file": "model", "interval": "model", "random": "model", "version": "model",
-    "geometry": "model", "shapes": "model", "rays": "model",
-    "sensor": "model", "scene": "model", "script": "model", "schedule": "model", "occupancy": "model", "survey": "model", "sample": "model", "columns": "model", "response": "model",
-    "effects": "engine",
-    "model": "engine", "state": "engine", "study": "engine", "recording": "engine",
+    "error": "model/core", "input_file": "model/core", "interval": "model/core", "random": "model/core", "version": "model/core",
+    "geometry": "model/geom", "shapes": "model/geom", "rays": "model/geom",
+    "sensor": "model/schema", "scene": "model/schema", "script": "model/schema", "schedule": "model/schema", "occupancy": "model/schema",
+    "survey": "model/schema", "sample": "model/schema", "columns": "model/schema", "response": "model/schema",
+    "effects": "engine/effects",
+    "model": "engine/sim", "state": "engine/sim", "study": "engine/sim", "recording": "engine/sim",
     "coverage": "surveys", "look": "surveys", "walk_test": "surveys",
     "room": "rooms", "flat": "rooms", "dataset": "rooms",
     "csv": "files", "io": "files", "log": "logs", "log_facts": "logs",
@@ -74,30 +75,27 @@ NAMED = re.compile(r'(?:\.|::|->)(\w+)\b(?!\()|"(\w+)"|auto&? \[([^\]]*)')
 DESCRIPTIONS = ("model/schema/fields.hpp", "model/schema/words.hpp")
 
 
-def layer_of(path: pathlib.Path, root: pathlib.Path):
-    parts = path.relative_to(root).parts
-    if parts[:2] == ("include", "pirsim"):
-        return PUBLIC.get(path.stem)
-    return parts[1] if parts[0] == "src" and len(parts) > 2 else None
-
-
-def included_layer(name: str):
+def place_of(name: str):
+    """House and room (or none) of a file, named as it is included; (None, None) of what is no part of pirsim."""
     parts = name.split("/")
     if parts[0] == "pirsim":
-        return PUBLIC.get(parts[1].removesuffix(".hpp"))
-    return parts[0] if parts[0] in BELOW and len(parts) > 1 else None
+        house, _, room = PUBLIC.get(parts[-1].removesuffix(".hpp"), "").partition("/")
+        return house or None, room or None
+    if parts[0] not in BELOW or len(parts) < 2:
+        return None, None
+    return parts[0], parts[1] if parts[0] in ROOMS and len(parts) > 2 else None
 
 
-def room_of(parts):
-    """Layer and room, of a path below src or an include."""
-    return (parts[0], parts[1]) if parts[0] in ROOMS and len(parts) > 2 else None
-
-
-def room_fault(here: pathlib.Path, name: str):
-    own, other = room_of(here.parts[1:]) if here.parts[0] == "src" else None, room_of(name.split("/"))
-    if own and other and own[0] == other[0] and own[1] != other[1] and other[1] not in ROOMS[own[0]][own[1]]:
-        return f"{own[0]}/{own[1]} must not include {other[0]}/{other[1]} ({name})"
-    return None
+def place_fault(own, name: str):
+    """Of a file at this place that includes `name`."""
+    (house, room), (other, other_room) = own, place_of(name)
+    if house is None or other is None:
+        return None
+    if other != house:
+        return None if other in BELOW[house] else f"{house} must not include {other} ({name})"
+    if room is None or other_room in (None, room) or other_room in ROOMS[house][room]:
+        return None
+    return f"{house}/{room} must not include {house}/{other_room} ({name})"
 
 
 def stray_files(root: pathlib.Path):
@@ -113,9 +111,9 @@ def violations(root: pathlib.Path):
     files = sorted([*root.glob("include/**/*.hpp"), *root.glob("src/**/*.hpp"), *root.glob("src/**/*.cpp")])
     graph = {}
     for file in files:
-        layer = layer_of(file, root)
         here = file.relative_to(root)
         key = str(here).removeprefix("include/").removeprefix("src/")
+        house, room = place_of(key)
         graph[key] = []
         for number, line in enumerate(file.read_text().splitlines(), 1):
             match = INCLUDE.match(line)
@@ -124,11 +122,7 @@ def violations(root: pathlib.Path):
             name = match.group(2)
             if match.group(1) == '"':
                 graph[key].append(name)
-            target = included_layer(name)
-            if layer and target and target != layer and target not in BELOW[layer]:
-                yield f"{here}:{number}: {layer} must not include {target} ({name})"
-            fault = room_fault(here, name) if match.group(1) == '"' else None
-            if fault:
+            if fault := place_fault((house, room), name):
                 yield f"{here}:{number}: {fault}"
             for prefix, gate in GATES.items():
                 if match.group(1) == "<" and name.startswith(prefix + "/") and str(here) not in gate:
@@ -136,7 +130,7 @@ def violations(root: pathlib.Path):
             for prefix, homes in THIRD_PARTY.items():
                 if match.group(1) == "<" and (name == prefix or name.startswith((prefix + "/", prefix + "."))
                                               or (prefix == "embree" and name.startswith("embree"))):
-                    if not homes & {layer, "/".join(here.parts[1:3])} or here.parts[0] == "include":
+                    if not homes & {house, f"{house}/{room}"} or here.parts[0] == "include":
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
     yield from stray_files(root)
     yield from cycles(graph)

@@ -69,6 +69,45 @@ class Circles(unittest.TestCase):
         self.assertEqual(len(self.circles_of(check_layers.binding_includes, files)), 1)
 
 
+class Houses(unittest.TestCase):
+    def found_in(self, name, *includes):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for file, content in (("src/model/schema/fields.hpp", ""),
+                                  (name, "".join(f"#include {include}\n" for include in includes))):
+                (root / file).parent.mkdir(parents=True, exist_ok=True)
+                (root / file).write_text(content)
+            return [text.split(": ", 1)[1] for text in check_layers.violations(root)]
+
+    def test_a_house_uses_those_below(self):
+        self.assertEqual(self.found_in("src/surveys/sight.cpp", '"engine/sim/study.hpp"', '"pirsim/random.hpp"'), [])
+        for name, include, told in (
+                ("src/engine/rt/room.cpp", '"app/session.hpp"', "engine must not include app (app/session.hpp)"),
+                ("src/surveys/sight.cpp", '"pirsim/calibrate.hpp"',
+                 "surveys must not include logs (pirsim/calibrate.hpp)"),
+                ("src/stats/trees.cpp", '"engine/sim/study.hpp"',
+                 "stats must not include engine (engine/sim/study.hpp)"),
+                ("include/pirsim/scene.hpp", '"pirsim/dataset.hpp"',
+                 "model must not include rooms (pirsim/dataset.hpp)")):
+            with self.subTest(name):
+                self.assertEqual(self.found_in(name, include), [told])
+
+    def test_rooms_of_a_house_know_those_below(self):
+        self.assertEqual(self.found_in("src/engine/sim/a.cpp", '"engine/body/arms.hpp"', '"pirsim/effects.hpp"'), [])
+        for include in ('"engine/sim/actor.hpp"', '"pirsim/study.hpp"'):
+            with self.subTest(include):
+                self.assertEqual(self.found_in("src/engine/body/arms.cpp", include),
+                                 [f"engine/body must not include engine/sim ({include[1:-1]})"])
+        self.assertIn("not in a room of engine", self.found_in("src/engine/loose.cpp")[0])
+
+    def test_a_library_has_its_place(self):
+        self.assertEqual(self.found_in("src/engine/rt/room.cpp", "<embree3/rtcore.h>"), [])
+        for name in ("src/engine/sim/actor.cpp", "include/pirsim/rays.hpp"):
+            with self.subTest(name):
+                self.assertEqual(self.found_in(name, "<embree3/rtcore.h>"),
+                                 ["embree3/rtcore.h may only be included in src/engine/rt/"])
+
+
 class ListedAgain(unittest.TestCase):
     def found_in(self, text):
         with tempfile.TemporaryDirectory() as folder:
