@@ -40,6 +40,8 @@ class RandomCommands {
         return motion.sit_down(seat_);
       case Stage::seated:
         return from_seated(motion);
+      default:  // nobody lies down here
+        return;
     }
   }
 
