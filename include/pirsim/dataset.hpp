@@ -100,6 +100,7 @@ struct RecipeSpec {
   Occupants occupants = Occupants::counted;
   std::vector<Export> exports;
   std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
+  int pictures = 6;                ///< of so many rooms, the first ones
   std::filesystem::path file;
   std::vector<std::string> overrides;                     ///< "sensing.response=zones"
   std::string given;                                      ///< the file's content

@@ -238,7 +238,6 @@ std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe, const fs:
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int most_pictures = 6;
 
 /// What was written differs from what is there, though it may be as long.
 void require_written(const Store& store, const RoomDayRecord& record) {
@@ -342,7 +341,7 @@ bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const Data
     const auto first = static_cast<std::size_t>((number - 1) * recipe.days);
     room.part = described.parts[first];
     room.staff = described.days[first].staff;
-    if (number <= most_pictures) {
+    if (number <= recipe.pictures) {
       const std::string file = "pictures/" + room_name(number) + ".png";
       draw_room_picture(recipe, room.scene, number, folder / file);
       described.pictures.push_back(file);

@@ -20,6 +20,7 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/random.hpp"
 #include "rooms/floor_plan.hpp"
+#include "rooms/recipe_fields.hpp"
 #include "rooms/room_day.hpp"
 
 // Who lives in a home of a recipe: read as ranges, drawn once a home.
@@ -314,18 +315,12 @@ std::size_t beds_of(const SceneSpec& home) {
 HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics& faults) {
   io::YamlMap map(node, faults, "household");
   HouseholdRangesSpec ranges;
-  ranges.works = map.number("works", ranges.works, {.min = 0.0, .max = 1.0});
-  ranges.works_at_home = map.number("works_at_home", ranges.works_at_home, {.min = 0.0, .max = 1.0});
+  io::read_fields(map, ranges);
   constexpr double rounding = 1e-9;
   if (ranges.works + ranges.works_at_home > 1.0 + rounding)
     faults.error(
         map.where("works_at_home"),
         "household: works_at_home: is more than 1 together with `works`, which is " + shortest_number(ranges.works));
-  ranges.age_years =
-      read_range(map, "age_years", ranges.age_years, range_of(field_of<&ResidentSpec::age_years>(), ResidentSpec{}));
-  ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week,
-                                    range_of(field_of<&HouseholdSpec::visits_a_week>(), ranges.usual));
-  ranges.shift_min = read_range(map, "shift_min", ranges.shift_min, {.min = -120.0, .max = 120.0});
   for (const HouseholdClock& named : household_clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
   HouseholdSpec somebody = ranges.usual;
   somebody.residents.emplace_back().id = "resident";
@@ -360,122 +355,37 @@ HouseholdSpec draw_household(const HouseholdRangesSpec& ranges, const SceneSpec&
 
 namespace {
 
-const std::vector<std::pair<std::string, DeskOrder>> order_names{
-    {"islands", DeskOrder::islands}, {"rows", DeskOrder::rows}, {"walls", DeskOrder::walls}};
-
-template <typename Limits, typename Value, typename ReadOne>
-std::pair<Value, Value> read_two(io::YamlMap& map, const std::string& key, std::pair<Value, Value> otherwise,
-                                 const Limits& limits, const ReadOne& read_one) {
-  const auto node = map.child(key);
-  if (!node) return otherwise;
-  if (node->is_scalar()) {
-    const Value one = read_one(*node, limits);
-    return {one, one};
-  }
-  const auto items = node->items();
-  if (!node->is_list() || items.size() != 2) {
-    map.faults().error(node->where(), key + ": expected a number, or [least, most]");
-    return otherwise;
-  }
-  const Value least = read_one(items[0], limits), most = read_one(items[1], limits);
-  if (most < least) {
-    map.faults().error(items[1].where(), key + ": the second number is less than the first");
-    return {least, least};
-  }
-  return {least, most};
-}
-
-std::vector<DeskOrder> read_orders(io::YamlMap& map, std::vector<DeskOrder> otherwise) {
-  const auto node = map.child("desks");
-  if (!node) return otherwise;
-  std::vector<std::string> names;
-  for (const auto& [name, value] : order_names) names.push_back(name);
-  std::vector<DeskOrder> orders;
-  const std::vector<io::YamlNode> items = node->is_list() ? node->items() : std::vector{*node};
-  for (const io::YamlNode& item : items) {
-    if (const auto index = item.choice(map.faults(), "desks", names)) orders.push_back(order_names[*index].second);
-  }
-  if (items.empty()) map.faults().error(node->where(), "desks: expected islands, rows or walls");
-  return orders.empty() ? std::move(otherwise) : orders;
+void refuse(const io::YamlMap& map, const std::string& key, const std::string& why) {
+  if (map.has(key)) map.faults().error(map.where(key), map.label(key) + ": " + why);
 }
 
 SensorGroupSpec read_sensors(const io::YamlNode& node, Diagnostics& faults) {
   io::YamlMap map(node, faults, "sensors");
   SensorGroupSpec group;
-  group.where = node.where();
-  static_cast<void>(map.required_child("mount"));
-  group.mount = map.choice<Mount>("mount", group.mount,
-                                  {{"ceiling", Mount::ceiling}, {"corner", Mount::corner}, {"wall", Mount::wall}});
-  if (const auto model = map.child("model")) {
-    group.where = model->where();
-    if (model->is_scalar()) {
-      group.models.push_back(model->text(faults, "model"));
-    } else {
-      group.models = map.texts("model");
-    }
-  }
-  group.count = read_count(map, "count", group.count, {.min = 0, .max = 50});
-  if (group.mount != Mount::ceiling) {
-    group.height_m = read_range(map, "height_m", group.height_m, {.min = 0.1, .max = 20.0});
-    group.tilt_deg = read_range(map, "tilt_deg", group.tilt_deg, {.min = -90.0, .max = 90.0});
+  map.require("mount");
+  io::read_fields(map, group);
+  group.where = map.where("model");
+  if (group.mount == Mount::ceiling) {
+    for (const char* key : {"height_m", "tilt_deg"})
+      refuse(map, key, "is of sensors on walls, and these hang on ceilings");
   }
   map.finish();
   return group;
 }
 
-/// Of a home other keys are read, as flat_reader.hpp says.
-RoomKind read_kind(io::YamlMap& map) {
-  enum class Word { office, meeting, home };
-  const Word word = map.choice<Word>("kind", Word::office,
-                                     {{"office", Word::office}, {"meeting", Word::meeting}, {"home", Word::home}});
-  if (word == Word::home) map.faults().error(map.where("kind"), "kind: a home is drawn by `pirsim room --home`");
-  return word == Word::meeting ? RoomKind::meeting : RoomKind::office;
-}
-
 }  // namespace
-
-Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, NumberRange limits) {
-  const auto read = [&](const io::YamlNode& node, const NumberRange& range) {
-    return node.number(map.faults(), key, range);
-  };
-  const auto [least, most] = read_two(map, key, std::pair(otherwise.least, otherwise.most), limits, read);
-  return {least, most};
-}
-
-CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise, IntegerRange limits) {
-  const auto read = [&](const io::YamlNode& node, const IntegerRange& range) {
-    return static_cast<int>(node.integer(map.faults(), key, range));
-  };
-  const auto [least, most] = read_two(map, key, std::pair(otherwise.least, otherwise.most), limits, read);
-  return {least, most};
-}
 
 RoomSpec read_room_keys(io::YamlMap& map) {
   RoomSpec spec;
   spec.where = map.where();
-  spec.kind = read_kind(map);
-  constexpr NumberRange sides{.min = 1.5, .max = 100.0}, share{.min = 0.0, .max = 1.0};
-  spec.width_m = read_range(map, "width_m", spec.width_m, sides);
-  spec.depth_m = read_range(map, "depth_m", spec.depth_m, sides);
-  spec.height_m = read_range(map, "height_m", spec.height_m, {.min = 2.2, .max = 20.0});
-  spec.l_shaped = map.number("l_shaped", spec.l_shaped, share);
-  spec.cut_share = read_range(map, "cut_share", spec.cut_share, {.min = 0.05, .max = 0.8});
-  spec.doors = read_count(map, "doors", spec.doors, {.min = 1, .max = 20});
-  spec.door_width_m = read_range(map, "door_width_m", spec.door_width_m, {.min = 0.7, .max = 5.0});
-  spec.seats = read_count(map, "seats", spec.seats, {.min = 1, .max = 200});
-  if (spec.kind == RoomKind::office) {
-    spec.orders = read_orders(map, spec.orders);
-    spec.desk_width_m = read_range(map, "desk_width_m", spec.desk_width_m, {.min = 1.0, .max = 2.4});
-    spec.desk_screens = map.number("desk_screens", spec.desk_screens, share);
+  io::read_fields(map, spec);
+  if (spec.kind == RoomKind::meeting) {
+    for (const char* key : {"desks", "desk_width_m", "desk_screens"}) refuse(map, key, "a meeting room has no desks");
   }
   // What is given and no room of these ranges can have.
-  if (map.has("cut_share") && !map.has("l_shaped"))
-    map.faults().error(map.where("cut_share"), "cut_share: is of rooms that lack a corner: give `l_shaped`, too");
-  if (map.has("desk_screens") && spec.desk_screens > 0.0 &&
-      std::ranges::find(spec.orders, DeskOrder::islands) == spec.orders.end())
-    map.faults().error(map.where("desk_screens"), "desk_screens: is of desks in islands, and `desks` has none");
-  spec.cupboards = read_count(map, "cupboards", spec.cupboards, {.min = 0, .max = 50});
-  spec.partitions = read_count(map, "partitions", spec.partitions, {.min = 0, .max = 50});
+  if (!map.has("l_shaped")) refuse(map, "cut_share", "is of rooms that lack a corner: give `l_shaped`, too");
+  if (spec.desk_screens > 0.0 && std::ranges::find(spec.orders, DeskOrder::islands) == spec.orders.end())
+    refuse(map, "desk_screens", "is of desks in islands, and `desks` has none");
   if (!map.has("sensors")) {
     static_cast<void>(map.list("sensors"));
     return spec;
@@ -490,86 +400,39 @@ RoomSpec read_room_keys(io::YamlMap& map) {
 
 namespace {
 
-template <typename Value>
-using Words = std::vector<std::pair<std::string, Value>>;
-
-/// A word, or a list of words of which one is drawn.
-template <typename Value>
-std::vector<Value> read_words(io::YamlMap& map, const std::string& key, std::vector<Value> otherwise,
-                              const Words<Value>& words) {
-  const auto node = map.child(key);
-  if (!node) return otherwise;
-  std::vector<std::string> names;
-  for (const auto& [name, value] : words) names.push_back(name);
-  std::vector<Value> values;
-  const std::vector<io::YamlNode> items =
-      node->is_list() ? io::read_list(*node, map.faults(), key) : std::vector{*node};
-  for (const io::YamlNode& item : items) {
-    if (const auto index = item.choice(map.faults(), key, names)) values.push_back(words[*index].second);
-  }
-  if (items.empty())
-    map.faults().error(node->where(), key + ": expected " + names.front() + " or another of its words");
-  return values.empty() ? std::move(otherwise) : values;
-}
-
 /// Refuses what is given and no flat of these ranges can have.
 void refuse_vain_wishes(io::YamlMap& map, const FlatSpec& spec) {
-  const auto refuse = [&](const std::string& key, const std::string& why) {
-    map.faults().error(map.where(key), key + ": " + why);
-  };
   // Beside the living room and the study, a bedroom for every two.
   const int rooms_with_study = std::max(3, 2 + (spec.residents.least + 1) / 2);
-  if (map.has("study") && spec.study > 0.0 && spec.rooms.most < rooms_with_study)
-    refuse("study", "a flat for " + counted(static_cast<std::size_t>(spec.residents.least), "resident") +
-                        " has one from `rooms: " + std::to_string(rooms_with_study) + "` on, and `rooms` is " +
-                        std::to_string(spec.rooms.most) + " at most");
+  if (spec.study > 0.0 && spec.rooms.most < rooms_with_study)
+    refuse(map, "study",
+           "a flat for " + counted(static_cast<std::size_t>(spec.residents.least), "resident") +
+               " has one from `rooms: " + std::to_string(rooms_with_study) + "` on, and `rooms` is " +
+               std::to_string(spec.rooms.most) + " at most");
   const auto hangs = [](const auto& places, auto place) { return std::ranges::find(places, place) != places.end(); };
   const bool in_rooms = hangs(spec.sensors_at, SensorsAt::rooms);
-  if (map.has("mount") && !in_rooms)
-    refuse("mount", "is of sensors in rooms, and all hang above doorways (`sensors_at: doorway`)");
+  if (!in_rooms) refuse(map, "mount", "is of sensors in rooms, and all hang above doorways (`sensors_at: doorway`)");
   for (const char* key : {"sensor_height_m", "sensor_tilt_deg"}) {
-    if (!map.has(key) || (in_rooms && hangs(spec.mounts, Mount::corner))) continue;
-    refuse(key, std::string("is of sensors in corners, and all hang ") +
-                    (in_rooms ? "on ceilings (`mount: ceiling`)" : "above doorways (`sensors_at: doorway`)"));
+    if (in_rooms && hangs(spec.mounts, Mount::corner)) continue;
+    refuse(map, key,
+           std::string("is of sensors in corners, and all hang ") +
+               (in_rooms ? "on ceilings (`mount: ceiling`)" : "above doorways (`sensors_at: doorway`)"));
   }
 }
 
 }  // namespace
 
 FlatSpec read_flat_keys(io::YamlMap& map) {
-  constexpr NumberRange share{.min = 0.0, .max = 1.0};
   FlatSpec spec;
   spec.where = map.where();
-  spec.rooms = read_count(map, "rooms", spec.rooms, {.min = 1, .max = 4});
-  spec.residents = read_count(map, "residents", spec.residents, {.min = 1, .max = 5});
-  const bool has_size = map.has("size_m2");
-  const Range size = read_range(map, "size_m2", {}, {.min = 15.0, .max = 1000.0});
-  if (has_size) spec.size_m2 = size;
-  spec.stretch = read_range(map, "stretch", spec.stretch, {.min = 0.3, .max = 4.0});
-  spec.height_m = read_range(map, "height_m", spec.height_m, {.min = 2.3, .max = 5.0});
-  spec.layouts = read_words(
-      map, "layout", spec.layouts,
-      Words<FlatLayout>{{"corridor", FlatLayout::corridor}, {"hall", FlatLayout::hall}, {"open", FlatLayout::open}});
-  spec.own_kitchen = map.number("own_kitchen", spec.own_kitchen, share);
-  spec.double_beds = map.number("double_beds", spec.double_beds, share);
-  spec.study = map.number("study", spec.study, share);
-  spec.sensors_at = read_words(map, "sensors_at", spec.sensors_at,
-                               Words<SensorsAt>{{"room", SensorsAt::rooms}, {"doorway", SensorsAt::doorways}});
-  spec.mounts =
-      read_words(map, "mount", spec.mounts, Words<Mount>{{"corner", Mount::corner}, {"ceiling", Mount::ceiling}});
-  if (const auto model = map.child("model")) {
-    spec.models = model->is_scalar() ? std::vector{model->text(map.faults(), "model")} : map.texts("model");
-    spec.models_where = model->where();
-  }
-  spec.sensor_height_m = read_range(map, "sensor_height_m", spec.sensor_height_m, {.min = 0.1, .max = 5.0});
-  spec.sensor_tilt_deg = read_range(map, "sensor_tilt_deg", spec.sensor_tilt_deg, {.min = -90.0, .max = 90.0});
+  io::read_fields(map, spec);
+  if (map.has("model")) spec.models_where = map.where("model");
   refuse_vain_wishes(map, spec);
   return spec;
 }
 
 namespace {
 
-constexpr int most_rooms = static_cast<int>(limits::rooms), most_days = 3'660;  // assumed: ten years
 constexpr std::int64_t most_room_days = 1'000'000;  // assumed: some months of a cluster of a hundred cores
 
 using io::YamlMap;
@@ -621,9 +484,7 @@ VariedEffectSpec read_effect(const YamlNode& node, Diagnostics& faults) {
     return effect;
   }
   YamlMap map(node, faults, "effect");
-  effect.per = map.choice<VariedEffectSpec::Per>(
-      "per", effect.per, {{"room", VariedEffectSpec::Per::room}, {"day", VariedEffectSpec::Per::day}});
-  effect.chance = map.number("chance", effect.chance, {.min = 0.0, .max = 1.0});
+  io::read_fields(map, effect);
   std::optional<YamlNode> settings;
   for (const io::YamlKey& key : node.keys()) {
     if (key.name == "per" || key.name == "chance") continue;
@@ -663,14 +524,6 @@ ScheduleSpec usual_schedule(RoomKind kind, int most_seats, const Where& where) {
   return schedule;
 }
 
-std::optional<CountRange> read_people(YamlMap& map, std::optional<CountRange> otherwise) {
-  if (!map.has("people")) {
-    static_cast<void>(map.child("people"));
-    return otherwise;
-  }
-  return read_count(map, "people", {}, {.min = 0, .max = 200});
-}
-
 /// A file's name, or `{scene: flat.glb, marks: flat.yaml}`.
 OwnScene read_own_scene(const YamlNode& node, const RecipeSpec& recipe, Diagnostics& faults) {
   const auto file_of = [&](const YamlNode& named, const std::string& what) {
@@ -700,18 +553,13 @@ bool is_home(const YamlNode& node, Diagnostics& faults) {
   return kind && kind->is_scalar() && kind->text(faults, "kind") == "home";
 }
 
-std::optional<Range> read_ambient(YamlMap& map) {
-  const Range given = read_range(map, "ambient_c", {}, accepted::skin_c);
-  return map.has("ambient_c") ? std::optional(given) : std::nullopt;
-}
-
 /// How warm rooms are whose group doesn't say it, unless the sensing does.
 void read_usual_ambient(YamlMap& map, bool sensing_tells, RecipeSpec& recipe) {
   // Ref: [Foldvary2018], means of 121 cooled office buildings in Europe, America and Oceania: 5th to 95th percentile.
   constexpr Range offices{21.0, 25.0};
   constexpr Range homes{19.0, 24.0};  // Ref: [EnBuild2021], a mean of 19; [Slovenia2017], nearly all
-  const std::optional<Range> given = read_ambient(map);
-  recipe.ambient_sd_k = map.number("ambient_sd_k", recipe.ambient_sd_k, {.min = 0.0, .max = 10.0});
+  std::optional<Range> given;
+  io::read_optional_ends(map, "ambient_c", given, accepted::skin_c);
   const auto twice = [&](const Where& where) {
     map.faults().error(where, "ambient_c: sensing.ambient_c says it already: leave out one of them");
   };
@@ -728,11 +576,10 @@ RoomGroupSpec read_homes(const YamlNode& node, const std::optional<ScheduleSpec>
   RoomGroupSpec group;
   group.where = node.where();
   static_cast<void>(map.child("kind"));
-  group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});
+  io::read_fields(map, group);
   HomeGroupSpec& home = group.home.emplace();
   home.flats = read_flat_keys(map);
   if (const auto household = map.child("household")) home.household = read_household_ranges(*household, faults);
-  group.ambient_c = read_ambient(map);
   group.schedule.where = group.where;
   group.schedule.first_day = map.text("first_day", schedule ? schedule->first_day : group.schedule.first_day);
   group.schedule.from_h = home_from_h;
@@ -743,8 +590,8 @@ RoomGroupSpec read_homes(const YamlNode& node, const std::optional<ScheduleSpec>
     faults.error(map.where("first_day"), fault.issues().front().message);
   }
   for (const char* key : {"schedule", "people"}) {
-    if (map.child(key))
-      faults.error(map.where(key), std::string(key) + ": a home has `household` and `residents` instead");
+    static_cast<void>(map.child(key));
+    refuse(map, key, "a home has `household` and `residents` instead");
   }
   map.finish();
   return group;
@@ -759,14 +606,13 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
   if (map.has("scenes")) {
     for (const YamlNode& scene : map.required_list("scenes", limits::rooms))
       group.scenes.push_back(read_own_scene(scene, recipe, faults));
-    group.count = map.integer("count", static_cast<int>(group.scenes.size()), {.min = 1, .max = most_rooms});
+    group.count = static_cast<int>(group.scenes.size());
   } else {
     static_cast<void>(map.list("scenes", limits::rooms));
-    group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});
     group.rooms = read_room_keys(map);
   }
-  group.people = read_people(map, people);
-  group.ambient_c = read_ambient(map);
+  group.people = people;
+  io::read_fields(map, group);
   constexpr int many = 200;  // of staff; a room takes as many as it has seats
   const auto own = io::read_schedule(map.child("schedule"), faults);
   group.schedule = own ? *own : schedule ? *schedule : usual_schedule(group.rooms.kind, many, group.where);
@@ -781,7 +627,7 @@ std::optional<DrawBySpec> read_draw_by(YamlMap& map, int n_rooms) {
   DrawBySpec draw_by;
   YamlMap own(*node, map.faults(), "draw_by");
   draw_by.where = node->where();
-  draw_by.count = own.required_integer("count", {.min = 1, .max = most_rooms});
+  draw_by.count = own.required_integer("count", accepted::rooms_alike);
   for (const YamlNode& weight : own.required_list("weights", limits::rooms))
     draw_by.weights.push_back(weight.number(map.faults(), "draw_by: weights", {.min = 0.0}));
   own.finish();
@@ -798,17 +644,10 @@ std::optional<DrawBySpec> read_draw_by(YamlMap& map, int n_rooms) {
 
 SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
   SplitSpec split;
-  const auto node = map.child("split");
   // What is too small to be divided isn't, unless a recipe says how.
   if (recipe.n_rooms() < 3 || recipe.draw_by) split.validation_rooms = split.test_rooms = 0.0;
   if (recipe.days < 2) split.test_days = 0.0;
-  if (!node) return split;
-  constexpr NumberRange share{.min = 0.0, .max = 1.0};
-  YamlMap own(*node, map.faults(), "split");
-  split.validation_rooms = own.number("validation_rooms", split.validation_rooms, share);
-  split.test_rooms = own.number("test_rooms", split.test_rooms, share);
-  split.test_days = own.number("test_days", split.test_days, share);
-  own.finish();
+  io::read_part(map, "split", split);
   if (recipe.draw_by && (split.validation_rooms > 0.0 || split.test_rooms > 0.0)) {
     map.faults().error(map.where("split"),
                        "split: draw_by draws a room more than once, so that none can be held back: "
@@ -819,16 +658,6 @@ SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
 
 void read_outputs(YamlMap& map, RecipeSpec& recipe) {
   recipe.occupants = map.flag("occupants", false) ? Occupants::told : Occupants::counted;
-  for (const YamlNode& item : map.list("exports")) {
-    constexpr std::array all{Export::uci864, Export::casas, Export::energyplus};
-    const auto index = item.choice(map.faults(), "exports", {"uci864", "casas", "energyplus"});
-    if (!index) continue;
-    if (std::ranges::find(recipe.exports, all[*index]) != recipe.exports.end()) {
-      map.faults().error(item.where(), "exports: " + item.text(map.faults(), "exports") + " stands here twice");
-    } else {
-      recipe.exports.push_back(all[*index]);
-    }
-  }
   std::vector<std::pair<std::string, std::string>> endings;
   for (const std::string& ending : io::table_endings()) endings.emplace_back(ending, ending);
   recipe.ending = map.choice<std::string>("rows", recipe.ending, endings);
@@ -873,8 +702,7 @@ RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file
     if (recipe.text.find(told) == std::string::npos) recipe.text += told;
   }
   recipe.name = map.text("name", io::stem_of_input(file));
-  recipe.seed = map.unsigned_integer("seed", recipe.seed);
-  recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});
+  io::read_fields(map, recipe);
   const auto sensing = map.child("sensing");
   const auto sensing_tells = [&](const std::string& key) {
     return sensing && sensing->is_map() && YamlMap(*sensing, faults, "sensing").has(key);
@@ -882,7 +710,8 @@ RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file
   recipe.sensing = io::read_sensing(sensing, faults);
   if (!sensing_tells("units")) recipe.sensing.units = Units::drawn;
   const auto schedule = io::read_schedule(map.child("schedule"), faults);
-  const auto people = read_people(map, std::nullopt);
+  std::optional<CountRange> people;
+  io::read_optional_ends(map, "people", people, range_of(field_of<&RoomGroupSpec::people>(), RoomGroupSpec{}));
   for (const YamlNode& node : map.required_list("rooms"))
     recipe.rooms.push_back(read_group(node, recipe, schedule, people, faults));
   read_usual_ambient(map, sensing_tells("ambient_c"), recipe);

@@ -44,11 +44,6 @@ inline constexpr std::array dataset_parts{
 /// Reads the keys of a RoomSpec; the caller finishes the map.
 [[nodiscard]] RoomSpec read_room_keys(io::YamlMap& map);
 
-/// A number, or a list of the least and the most; `otherwise` if the key isn't there.
-[[nodiscard]] Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, NumberRange limits);
-[[nodiscard]] CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise,
-                                    IntegerRange limits);
-
 // Ranges of flats as YAML: homes of a recipe, and the options of `pirsim room --home`.
 
 /// Reads the keys of a FlatSpec; the caller finishes the map.

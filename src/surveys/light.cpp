@@ -17,6 +17,7 @@
 #include "pirsim/random.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
+#include "surveys/light_fields.hpp"
 
 // What is summed up of a light, and figures over days.
 
@@ -764,70 +765,27 @@ void name_sensors(RuleSpec& rule, const SceneSpec& scene) {
 
 namespace {
 
-constexpr NumberRange delay_min{.min = 0.0, .max = 1440.0}, reaction_s{.min = 0.0, .max = 3600.0};
-
-/// The map of that name, if it is there.
-template <typename Part, typename Read>
-void read_part(io::YamlMap& above, const std::string& key, std::optional<Part>& part, Read read) {
-  const auto node = above.child(key);
-  if (!node) return;
-  io::YamlMap map(*node, above.faults(), key);
-  read(map, part.emplace());
-  map.finish();
-}
-
-double hours(io::YamlMap& map, const std::string& key, double otherwise) {
-  return map.has(key) ? io::read_hours(map, key, otherwise) : (static_cast<void>(map.child(key)), otherwise);
-}
-
-/// One number, or several.
-std::vector<double> read_delays(io::YamlMap& map, const std::vector<double>& otherwise) {
-  const auto node = map.child("delay_min");
-  if (!node || !node->is_list()) return {map.number("delay_min", otherwise.front(), delay_min)};
-  const std::vector<double> delays = map.numbers("delay_min", {}, delay_min);
-  if (delays.empty()) map.faults().error(node->where(), "delay_min: expected a number, or several");
-  for (auto delay = delays.begin(); delay != delays.end(); ++delay) {
-    if (std::find(delays.begin(), delay, *delay) == delay) continue;
-    const io::YamlNode again = map.list("delay_min")[static_cast<std::size_t>(delay - delays.begin())];
-    map.faults().error(again.where(), "delay_min: " + shortest_number(*delay) + " is named twice");
-  }
-  return delays.empty() ? otherwise : delays;
-}
-
 LightSpec read_light(const io::YamlNode& node, std::size_t index, Diagnostics& faults) {
   io::YamlMap map(node, faults, "light");
   LightSpec light;
   light.where = node.where();
   light.area = map.text("area");
   light.id = map.text("id", light.area.empty() ? "light_" + std::to_string(index + 1) : light.area);
-  light.sensors = map.texts("sensors");
-  read_part(map, "together", light.together, [](io::YamlMap& own, TogetherSpec& together) {
-    together.sensors = own.integer("sensors", together.sensors, {.min = 1, .max = 1000});
-    together.within_s = own.number("within_s", together.within_s, reaction_s);
-  });
-  light.delays_min = read_delays(map, light.delays_min);
-  read_part(map, "manual", light.manual, [](io::YamlMap& own, ManualSpec& manual) {
-    manual.switch_s = own.number("switch_s", manual.switch_s, reaction_s);
-    manual.grace_s = own.number("grace_s", manual.grace_s, reaction_s);
-  });
-  if (map.child("wave_s")) light.wave_s = map.number("wave_s", 0.0, reaction_s);
+  light.door = map.text("door");
+  io::read_fields(map, light);
+  io::read_part(map, "together", light.together);
+  io::read_part(map, "manual", light.manual);
+  io::read_part(map, "night", light.night);
+  if (light.delays_min.empty()) faults.error(map.where("delay_min"), "delay_min: expected a number, or several");
+  for (auto delay = light.delays_min.begin(); delay != light.delays_min.end(); ++delay) {
+    if (std::find(light.delays_min.begin(), delay, *delay) == delay) continue;
+    const io::YamlNode again = map.list("delay_min")[static_cast<std::size_t>(delay - light.delays_min.begin())];
+    faults.error(again.where(), "delay_min: " + shortest_number(*delay) + " is named twice");
+  }
   if (light.wave_s && light.manual)
     faults.error(map.where("wave_s"), "wave_s: with `manual`, who is in the dark uses the switch instead");
-  light.timer = map.choice<Timer>("timer", light.timer, {{"restarts", Timer::restarts}, {"runs_out", Timer::runs_out}});
-  light.least_on_min = map.number("least_on_min", light.least_on_min, delay_min);
-  light.door = map.text("door");
-  light.settle_s = map.number("settle_s", light.settle_s, reaction_s);
   if (map.has("settle_s") && light.door.empty())
     faults.error(map.where("settle_s"), "settle_s: of its door, and the light has no `door`");
-  read_part(map, "night", light.night, [](io::YamlMap& own, NightSpec& night) {
-    night.from_h = hours(own, "from", night.from_h);
-    night.to_h = hours(own, "to", night.to_h);
-    night.delay_min = own.number("delay_min", night.delay_min, delay_min);
-  });
-  light.from_h = hours(map, "from", light.from_h);
-  light.to_h = hours(map, "to", light.to_h);
-  light.power_w = map.number("power_w", light.power_w, {.min = 0.0, .max = 1e6});
-  light.at_most_a_week = map.number("at_most_a_week", light.at_most_a_week, {.min = 1e-3, .max = 1e4});
   if (map.has("sensors") && light.sensors.empty())
     faults.error(map.where("sensors"), "sensors: light '" + light.id + "' has none that could switch it");
   const bool is_whole_day = light.from_h == 0.0 && light.to_h == 24.0;

@@ -3,6 +3,7 @@
 // and the pages' tables of keys from what it prints.
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <string>
@@ -10,6 +11,8 @@
 
 #include "model/schema/dome.hpp"
 #include "model/schema/fields.hpp"
+#include "rooms/recipe_fields.hpp"
+#include "surveys/light_fields.hpp"
 
 namespace pirsim {
 namespace {
@@ -108,6 +111,16 @@ struct Python<std::map<std::string, T, Compare>> {
   static std::string type() { return "dict[str, " + type_of<T>() + "]"; }
   static std::string text(const std::map<std::string, T, Compare>&) { return "{}"; }  // none has entries by default
 };
+/// What is drawn, as files write it: a number, or [least, most].
+template <typename T>
+requires requires(T ends) { ends.least; }
+struct Python<T> {
+  static std::string type() { return "[least, most]"; }
+  static std::string text(const T& ends) {
+    const std::string least = written(ends.least), most = written(ends.most);
+    return least == most ? least : "[" + least + ", " + most + "]";
+  }
+};
 template <>
 struct Python<Vec2> {
   static std::string type() { return "Point2"; }
@@ -177,6 +190,47 @@ constexpr bool is_action = []<typename... What>(std::variant<What...>*) {
   return (std::same_as<Spec, What> || ...);
 }(static_cast<Action*>(nullptr));
 
+/// What a file has as a number, a time of day, a text, or several of them.
+template <typename F, typename Value>
+constexpr bool is_plain() {
+  if constexpr (NumberField<F> || TimeField<F> || Worded<Value> || std::same_as<Value, std::string> ||
+                std::same_as<Value, std::vector<std::string>>) {
+    return true;
+  } else if constexpr (requires { typename Value::value_type; }) {
+    return Worded<typename Value::value_type>;
+  } else {
+    return false;
+  }
+}
+
+std::string time_of_day(double hours) {
+  const int minutes = static_cast<int>(std::lround(60.0 * hours));
+  const auto two = [](int number) { return std::string(number < 10 ? "0" : "") + std::to_string(number); };
+  return two(minutes / 60) + ":" + two(minutes % 60);
+}
+
+/// Of specs that only files have: their plain fields, for tables of keys.
+template <typename Spec>
+void print_keys() {
+  const Spec spec{};
+  std::cout << "  " << in_quotes(Fields<Spec>::name) << ": {\"is_action\": false, \"fields\": [";
+  bool is_first = true;
+  each_field<Spec>([&](const auto& field) {
+    using F = std::remove_cvref_t<decltype(field)>;
+    using Value = std::remove_cvref_t<decltype(spec.*field.member)>;
+    if constexpr (is_plain<F, Value>()) {
+      if (field.use == Use::message) return;
+      std::string value = written(spec.*field.member);
+      if constexpr (TimeField<F>) value = in_quotes(time_of_day(spec.*field.member));
+      std::cout << (is_first ? "\n" : ",\n") << "    {\"name\": " << in_quotes(key_of(field))
+                << ", \"type\": " << in_quotes(type_of<Value>()) << ", \"default\": " << in_quotes(value)
+                << ", \"meaning\": " << in_quotes(field.meaning) << ", \"plain\": true" << among(field.range) << "}";
+      is_first = false;
+    }
+  });
+  std::cout << "]},\n";
+}
+
 template <typename Spec>
 void print(std::string_view key) {
   const Spec spec{};
@@ -217,5 +271,17 @@ int main() {
   print<SwingingArmSpec>("arm");
   print<PlacementLightSpec>("placement_light");
   print<NuisanceSpec>("nuisance");
+  print_keys<dataset::RecipeSpec>();
+  print_keys<dataset::RoomGroupSpec>();
+  print_keys<dataset::RoomSpec>();
+  print_keys<dataset::SensorGroupSpec>();
+  print_keys<dataset::FlatSpec>();
+  print_keys<dataset::HouseholdRangesSpec>();
+  print_keys<dataset::VariedEffectSpec>();
+  print_keys<dataset::SplitSpec>();
+  print_keys<control::LightSpec>();
+  print_keys<control::TogetherSpec>();
+  print_keys<control::ManualSpec>();
+  print_keys<control::NightSpec>();
   std::cout << "  \"Activity\": " << in_quotes(literal<Activity>()) << "\n}\n";
 }

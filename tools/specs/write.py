@@ -17,7 +17,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CLASSES = ROOT / "python/pirsim/specs.py"
-PAGES = ("docs/formats/coverage.md", "docs/formats/scene.md", "docs/formats/sensor.md")
+PAGES = [f"docs/formats/{page}.md" for page in ("control", "coverage", "dataset", "scene", "script", "sensor")]
 WIDTH = 120
 
 HEAD = '''"""Scenes and scripts as plain objects: read from files, changed, or made from nothing.
@@ -129,9 +129,11 @@ def classes(specs):
 
 def shown(value):
     """A default value as a page has it."""
-    if value == "None":
+    if value in ("None", "[]", '""'):
         return ""
     text = re.sub(r"(\d)\.0\b", r"\1", value)
+    if text.startswith('["'):
+        return text.replace('"', "`")
     return f"`{text[1:-1]}`" if text.startswith('"') else text
 
 
@@ -141,7 +143,7 @@ def unit(name):
 
 
 def is_plain(one):
-    return re.fullmatch(r"(float|int|list\[float\]|Literal\[.*\])( \| None)?", one["type"]) is not None
+    return one.get("plain") or re.fullmatch(r"(float|int|list\[float\]|Literal\[.*\])( \| None)?", one["type"]) is not None
 
 
 def keys_of(part, specs):
@@ -154,11 +156,21 @@ def keys_of(part, specs):
     return [(where, one) for name, one in fields.items() if is_plain(one) and name not in (but or "").split()]
 
 
+def meaning_of(one):
+    """With the words in front that the field knows, unless the row has them anyway."""
+    literal = re.search(r"Literal\[(.*?)\]", one["type"])
+    words = one.get("among") or re.findall(r"\w+", literal[1] if literal else "")
+    has_all = all(f"`{word}`" in one["meaning"] + shown(one["default"]) for word in words)
+    known = "" if has_all else ", ".join(f"`{word}`" for word in words)
+    return "; ".join(text for text in (known, one["meaning"]) if text)
+
+
 def table(parts, specs):
     lines = ["| key | unit | default | meaning |", "|---|---|---|---|"]
     for where, one in [row for part in parts.split(";") for row in keys_of(part, specs)]:
         key = f"{where}.{one['name']}" if where else one["name"]
-        cells = [f"`{key}`", unit(one["name"]), shown(one["default"]), one["meaning"]]
+        says_default = re.search(r"\bdefault \S|^required;", one["meaning"])
+        cells = [f"`{key}`", unit(one["name"]), "" if says_default else shown(one["default"]), meaning_of(one)]
         lines.append("|" + "".join(f" {cell} |" if cell else " |" for cell in cells))
     return "\n".join(lines)
 

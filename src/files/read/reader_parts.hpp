@@ -1,6 +1,7 @@
 // Parts of scripts, studies and sensor files, each read by one function. Private to io.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
@@ -26,6 +27,43 @@ namespace pirsim::io {
 /// "08:30", as hours.
 [[nodiscard]] double read_hours(YamlMap& map, const std::string& key, double otherwise);
 
+/// What a file may give as a number or as [least, most], of which one is drawn.
+template <typename Value>
+concept DrawnNumber = requires(Value value) {
+  value.least;
+  value.most;
+};
+template <typename Ends, typename Range>
+void read_ends(YamlMap& map, const std::string& key, Ends& ends, const Range& range) {
+  const std::optional<YamlNode> node = map.child(key);
+  if (!node) return;
+  const auto read_one = [&](const YamlNode& one) {
+    if constexpr (std::same_as<Range, IntegerRange>) {
+      return static_cast<int>(one.integer(map.faults(), map.label(key), range));
+    } else {
+      return one.number(map.faults(), map.label(key), range);
+    }
+  };
+  if (node->is_scalar()) {
+    ends.least = ends.most = read_one(*node);
+    return;
+  }
+  const std::vector<YamlNode> items = node->items();
+  if (!node->is_list() || items.size() != 2)
+    return map.faults().error(node->where(), map.label(key) + ": expected a number, or [least, most]");
+  ends = {read_one(items[0]), read_one(items[1])};
+  if (ends.most < ends.least) {
+    map.faults().error(items[1].where(), map.label(key) + ": the second number is less than the first");
+    ends.most = ends.least;
+  }
+}
+
+template <typename Ends, typename Range>
+void read_optional_ends(YamlMap& map, const std::string& key, std::optional<Ends>& ends, const Range& range) {
+  if (!map.child(key)) return;
+  read_ends(map, key, ends.emplace(), range);
+}
+
 /// Reads one number; what isn't there keeps its value.
 template <typename Spec, typename Value, typename Range>
 void read_number(YamlMap& map, Spec& spec, const Field<Spec, Value, Range>& field) {
@@ -38,6 +76,10 @@ void read_number(YamlMap& map, Spec& spec, const Field<Spec, Value, Range>& fiel
     value = map.number(key, value, range);
   } else if constexpr (std::same_as<Value, std::vector<double>>) {
     value = map.numbers(key, value, range);
+  } else if constexpr (DrawnNumber<Value>) {
+    read_ends(map, key, value, range);
+  } else if constexpr (requires { requires DrawnNumber<typename Value::value_type>; }) {
+    read_optional_ends(map, key, value, range);
   } else if constexpr (std::same_as<Value, int>) {
     value = map.integer(key, value, range);
   } else if constexpr (std::same_as<Value, std::uint64_t>) {
@@ -59,9 +101,9 @@ void read_numbers(YamlMap& map, Spec& spec) {
   });
 }
 
-/// The words that a field may have.
-template <typename Value, typename Enum, typename Spec, typename Range>
-[[nodiscard]] std::vector<std::pair<std::string, Value>> words_of(const Field<Spec, Value, Range>& field) {
+/// The words that a field may have, and what they stand for: a value of the enumeration, or an optional one.
+template <typename Value, typename Enum, typename Spec, typename Given, typename Range>
+[[nodiscard]] std::vector<std::pair<std::string, Value>> words_of(const Field<Spec, Given, Range>& field) {
   std::vector<std::pair<std::string, Value>> words;
   if constexpr (std::same_as<Range, Unbounded>) {
     for (const auto& [word, value] : Words<Enum>::all) words.emplace_back(word, value);
@@ -70,16 +112,21 @@ template <typename Value, typename Enum, typename Spec, typename Range>
   }
   return words;
 }
-/// Reads a list of words, if it is there; an empty one is a fault.
+/// Reads a list of words, or a lone one, if it is there; an empty list is a fault.
 template <typename Enum, typename Spec, typename Range>
 void read_words(YamlMap& map, std::vector<Enum>& value, const Field<Spec, std::vector<Enum>, Range>& field) {
-  if (!map.child(field.name)) return;
+  const std::optional<YamlNode> node = map.child(field.name);
+  if (!node) return;
   value.clear();
   std::vector<std::string> words;
-  for (const auto& [word, known] : Words<Enum>::all) words.emplace_back(word);
-  for (const YamlNode& item : map.required_list(field.name)) {
+  const auto known = words_of<Enum, Enum>(field);
+  for (const auto& [word, meant] : known) words.push_back(word);
+  for (const YamlNode& item : node->is_scalar() ? std::vector{*node} : map.required_list(field.name)) {
     const auto at = item.choice(map.faults(), map.label(field.name), words);
-    if (at) value.push_back(Words<Enum>::all[*at].second);
+    if (!at) continue;
+    if (std::ranges::find(value, known[*at].second) != value.end())
+      map.faults().error(item.where(), map.label(field.name) + ": '" + known[*at].first + "' is named twice");
+    value.push_back(known[*at].second);
   }
 }
 /// Reads every field whose form is plain: words, lists of names, numbers, times of day. What isn't there keeps its
@@ -87,6 +134,7 @@ void read_words(YamlMap& map, std::vector<Enum>& value, const Field<Spec, std::v
 template <typename Spec>
 void read_fields(YamlMap& map, Spec& spec) {
   each_field<Spec>([&](const auto& field) {
+    if (field.use == Use::message) return;
     auto& value = spec.*field.member;
     using Value = std::remove_reference_t<decltype(value)>;
     if constexpr (Worded<Value>) {
@@ -120,6 +168,10 @@ void read_part(YamlMap& above, const std::string& key, Spec& part, const Also& a
 template <typename Spec>
 void read_part(YamlMap& above, const std::string& key, Spec& part) {
   read_part(above, key, part, [](YamlMap&) {});
+}
+template <typename Spec>
+void read_part(YamlMap& above, const std::string& key, std::optional<Spec>& part) {
+  if (above.child(key)) read_part(above, key, part.emplace());
 }
 /// Takes the faults of check_together() to the keys of a map: "amplifier: expected high_hz above low_hz".
 [[nodiscard]] inline TellFault faults_of(const YamlMap& map, const std::string& what) {

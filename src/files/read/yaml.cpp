@@ -264,7 +264,9 @@ std::string YamlMap::required_text(const std::string& key) {
 
 std::vector<double> YamlMap::numbers(const std::string& key, std::vector<double> otherwise, NumberRange range) {
   const std::optional<YamlNode> node = child(key);
-  return node ? read_numbers(*node, *faults_, label(key), range) : otherwise;
+  if (!node) return otherwise;
+  if (node->is_scalar()) return {node->number(*faults_, label(key), range)};
+  return read_numbers(*node, *faults_, label(key), range);
 }
 std::vector<double> YamlMap::required_numbers(const std::string& key, std::size_t size, NumberRange range) {
   const std::optional<YamlNode> node = child(key);
@@ -281,7 +283,9 @@ std::vector<double> YamlMap::required_numbers(const std::string& key, std::size_
   return values;
 }
 std::vector<std::string> YamlMap::texts(const std::string& key, std::vector<std::string> otherwise) {
-  if (!child(key)) return otherwise;
+  const std::optional<YamlNode> node = child(key);
+  if (!node) return otherwise;
+  if (node->is_scalar()) return {node->text(*faults_, label(key))};
   std::vector<std::string> values;
   for (const YamlNode& item : list(key)) {
     values.push_back(item.text(*faults_, label(key)));

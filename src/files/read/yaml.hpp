@@ -152,7 +152,8 @@ class YamlMap {
     return index ? names[*index].second : otherwise;
   }
 
-  // Lists. One of more than `most` items is a fault, and empty: it is counted before anything is made of it.
+  // Lists. One of more than `most` items is a fault, and empty: it is counted before anything is made of it. Of numbers
+  // and texts one alone may stand without brackets.
 
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::vector<double> otherwise,
                                             NumberRange range = {});

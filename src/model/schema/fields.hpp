@@ -811,12 +811,8 @@ struct Fields<WalkTestSpec> {
 }  // namespace pirsim
 
 // Every spec's fields, said once: what is called how, which numbers are accepted, what it means. A field that is added
-// to a struct is added in schema/fields/, without which nothing compiles that goes through all fields; fingerprints,
-// comparisons, checks, plain keys of files, Python's classes and the pages' tables of keys then follow (tools/specs).
-// Who needs descriptions includes this file, never a part of it: here the parts' macros end.
-
-#undef FIELD
-#undef LABEL
+// to a struct is added here, without which nothing compiles that goes through all fields; fingerprints, comparisons,
+// checks, plain keys of files, Python's classes and the pages' tables of keys then follow (tools/specs).
 
 namespace pirsim {
 
