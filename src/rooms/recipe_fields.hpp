@@ -190,12 +190,12 @@ struct Fields<dataset::RecipeSpec> {
       FIELD(exports),
       field("rows", &S::ending, "or .csv, .csv.zst"),
       FIELD(pictures, IntegerRange{.min = 0, .max = 1000}, "of so many rooms, the first ones"),
-      LABEL(file),
-      LABEL(overrides),
-      LABEL(given),
-      LABEL(text),
-      LABEL(originals),
-      LABEL(data_directories)};
+      added("file", &S::file),
+      added("overrides", &S::overrides),
+      added("given", &S::given),
+      added("text", &S::text),
+      added("originals", &S::originals),
+      added("data_directories", &S::data_directories)};
 };
 
 }  // namespace pirsim

@@ -219,7 +219,7 @@ void print_keys() {
     using F = std::remove_cvref_t<decltype(field)>;
     using Value = std::remove_cvref_t<decltype(spec.*field.member)>;
     if constexpr (is_plain<F, Value>()) {
-      if (field.use == Use::message) return;
+      if (field.use != Use::study) return;
       std::string value = written(spec.*field.member);
       if constexpr (TimeField<F>) value = in_quotes(time_of_day(spec.*field.member));
       std::cout << (is_first ? "\n" : ",\n") << "    {\"name\": " << in_quotes(key_of(field))

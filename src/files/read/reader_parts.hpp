@@ -134,7 +134,7 @@ void read_words(YamlMap& map, std::vector<Enum>& value, const Field<Spec, std::v
 template <typename Spec>
 void read_fields(YamlMap& map, Spec& spec) {
   each_field<Spec>([&](const auto& field) {
-    if (field.use == Use::message) return;
+    if (field.use == Use::reader) return;
     auto& value = spec.*field.member;
     using Value = std::remove_reference_t<decltype(value)>;
     if constexpr (Worded<Value>) {

@@ -68,7 +68,7 @@ YAML::Node written(const Spec& spec) {
   YAML::Node map(YAML::NodeType::Map);
   each_field<Spec>([&](const auto& field) {
     using F = std::remove_cvref_t<decltype(field)>;
-    if (field.use == Use::message) return;
+    if (field.use != Use::study) return;
     const auto& value = spec.*field.member;
     if constexpr (TimeField<F>) {
       const std::optional<double> hours = value;

@@ -23,7 +23,8 @@ namespace pirsim {
 
 enum class Use {
   study,   ///< what a study yields hangs on it
-  message  ///< only messages and outputs say it: names, descriptions, places in files
+  message,  ///< only messages and outputs say it: names, descriptions, places in files
+  reader    ///< the same, and no key of a file: whoever reads the file adds it
 };
 
 /// The range of fields that have none.
@@ -55,6 +56,12 @@ requires(!std::convertible_to<Range, const char*>)  //
 template <typename Spec, typename Value>
 constexpr Field<Spec, Value> label(const char* name, Value Spec::*member, const char* meaning = "") {
   return {name, member, {}, meaning, Use::message};
+}
+
+/// A field that whoever reads a file adds.
+template <typename Spec, typename Value>
+constexpr Field<Spec, Value> added(const char* name, Value Spec::*member) {
+  return {name, member, {}, "", Use::reader};
 }
 
 /// Specialised for each spec (schema/fields.hpp): its `name` in Python, what it is `about`, and `all` fields.
