@@ -1,4 +1,4 @@
-// Home Assistant's database, as rows of a table of time, sensor and state. Private to io.
+// Home Assistant's database, as rows of a table of time, sensor and state.
 #pragma once
 
 #include <cstdint>

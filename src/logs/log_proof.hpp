@@ -1,4 +1,4 @@
-// Readings and events as they come in, put together to tracks. Private to io.
+// Readings and events as they come in, put together to tracks.
 #pragma once
 
 #include <cstdint>
@@ -99,7 +99,7 @@ struct MotionEnds {
 [[nodiscard]] std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
                                             const std::function<void(std::int64_t)>& overlap);
 
-// What the rows themselves say of a log's form: proofs, so that no form is guessed. Private to io.
+// What the rows themselves say of a log's form: proofs, so that no form is guessed.
 
 /// A map of one line, to be pasted, that settles what rows leave open: "{pirsim_log: 1, rows: changes}".
 [[nodiscard]] std::string settling_map(const std::string& keys);
