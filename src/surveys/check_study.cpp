@@ -31,32 +31,10 @@
 #include "surveys/picture.hpp"
 #include "surveys/sight.hpp"
 
-// What a household's days hold, told without running them.
-
 namespace pirsim::studies {
-
-/// Times are seconds of the day.
-struct ExpectedResident {
-  std::string id, bed;
-  double mean_up_s = 0.0, mean_to_bed_s = 0.0;          ///< ends of the night's sleep
-  std::array<double, sim::n_home_activities> mean_s{};  ///< of a day
-};
-
-/// Of one trial's days, or its first ones.
-struct HomeOutlook {
-  std::int64_t first_day = 0;
-  int days = 0, working_days = 0, visits = 0;
-  std::vector<ExpectedResident> residents;
-};
-
-/// trial: index of one with a household. Draws at most so many days, without walking.
-[[nodiscard]] HomeOutlook home_outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days = 1000);
-void print(std::ostream& out, const HomeOutlook& outlook);
-
-/// What residents do where they are, since the scene has no place for it. Empty without a household.
-[[nodiscard]] std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study);
-
 namespace {
+
+constexpr std::uint32_t most_days = 1000;  ///< that an outlook draws
 
 /// "{mean: 08:30, sd_min: 30}"
 std::string written(const ClockSpec& clock) {
@@ -152,8 +130,15 @@ using sim::HomeActivity;
 constexpr std::size_t at(HomeActivity activity) { return static_cast<std::size_t>(activity); }
 HomeActivity activity_of(std::size_t index) { return static_cast<HomeActivity>(index); }
 
+/// Sums over days; times are seconds of the day.
+struct ExpectedResident {
+  std::string id, bed;
+  double up_s = 0.0, to_bed_s = 0.0;                      ///< ends of the night's sleep
+  std::array<double, sim::n_home_activities> active_s{};  ///< with each activity
+};
+
 void add_day(ExpectedResident& resident, const std::vector<sim::HomeStay>& stays) {
-  for (const sim::HomeStay& stay : stays) resident.mean_s[at(stay.activity)] += stay.to_s - stay.from_s;
+  for (const sim::HomeStay& stay : stays) resident.active_s[at(stay.activity)] += stay.to_s - stay.from_s;
   // Who is up at four, or goes to bed after it, is so at the ends of the day.
   const auto is_up = [](const sim::HomeStay& stay) {
     return stay.activity != HomeActivity::sleep && stay.activity != HomeActivity::toilet;
@@ -161,25 +146,50 @@ void add_day(ExpectedResident& resident, const std::vector<sim::HomeStay>& stays
   const auto first = std::ranges::find_if(stays, is_up);
   const auto last = std::ranges::find_if(stays.rbegin(), stays.rend(), is_up);
   if (first == stays.end()) return;
-  resident.mean_up_s += first->from_s;
-  resident.mean_to_bed_s += last->to_s;
+  resident.up_s += first->from_s;
+  resident.to_bed_s += last->to_s;
 }
 
 /// "23:10", also after midnight.
 std::string time_of_day_text(double seconds) { return clock_text(0, seconds).substr(11, 5); }
 
-void print_resident(std::ostream& out, const ExpectedResident& resident) {
+void print_resident(std::ostream& out, const ExpectedResident& resident, double n_days) {
   out << "  " << std::left << std::setw(12) << resident.id << std::right << " bed " << resident.bed << "; up "
-      << time_of_day_text(resident.mean_up_s) << '-' << time_of_day_text(resident.mean_to_bed_s)
+      << time_of_day_text(resident.up_s / n_days) << '-' << time_of_day_text(resident.to_bed_s / n_days)
       << "; hours a day:" << std::fixed << std::setprecision(1);
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < resident.mean_s.size(); ++i)
-    if (resident.mean_s[i] > 0.0) order.push_back(i);
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return resident.mean_s[i]; });
+  for (std::size_t i = 0; i < resident.active_s.size(); ++i)
+    if (resident.active_s[i] > 0.0) order.push_back(i);
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return resident.active_s[i] / n_days; });
   for (const std::size_t i : order)
     out << (i == order.front() ? " " : ", ") << sim::manner_of(activity_of(i)).phase << ' '
-        << resident.mean_s[i] / 3600.0;
+        << resident.active_s[i] / n_days / 3600.0;
   out << '\n';
+}
+
+/// The first days of the first trial, as drawn without walking.
+void print_home(std::ostream& out, const sim::CompiledStudy& study) {
+  const sim::TrialModel& trial = study.trials().front();
+  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
+  std::vector<ExpectedResident> residents;
+  for (const sim::PersonModel& person : trial.people) {
+    const auto& part = person.spec.part;
+    if (part && part->part == SchedulePart::resident) residents.push_back({person.spec.id, part->seat});
+  }
+  const std::uint32_t n_days = std::min(study.n_runs() / n_trials, most_days);
+  std::size_t n_working_days = 0, n_visits = 0;
+  for (std::uint32_t run = 0; run < n_days * n_trials; run += n_trials) {
+    const std::int64_t day = sim::day_of(study, run);
+    const sim::HomeDay drawn = sim::draw_home_day(*trial.schedule->household, study.seed(), run, day);
+    n_working_days += is_working_day(day) ? 1 : 0;
+    n_visits += drawn.visits.size();
+    for (std::size_t i = 0; i < residents.size(); ++i) add_day(residents[i], drawn.residents[i]);
+  }
+  out << "household: " << counted(n_days, "day") << " from " << clock_text(sim::day_of(study, 0), 0.0).substr(0, 10)
+      << " (" << counted(n_working_days, "working day")
+      << "), each from 04:00 to 04:00; means as drawn, before anybody has walked\n";
+  for (const ExpectedResident& resident : residents) print_resident(out, resident, std::max(1U, n_days));
+  out << "  visits: " << n_visits << "\n\n";
 }
 
 /// The place of somebody else over which a resident gets into their own bed, or nullptr.
@@ -215,43 +225,8 @@ void warn_of_beds(const sim::CompiledStudy& study, const sim::TrialModel& trial,
 
 }  // namespace
 
-HomeOutlook home_outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days) {
-  const sim::TrialModel& model = study.trials()[trial];
-  const HouseholdSpec& household = *model.schedule->household;
-  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
-  HomeOutlook result;
-  result.first_day = sim::day_of(study, static_cast<std::uint32_t>(trial));
-  result.days =
-      static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
-  for (const sim::PersonModel& person : model.people) {
-    const auto& part = person.spec.part;
-    if (part && part->part == SchedulePart::resident) result.residents.push_back({person.spec.id, part->seat});
-  }
-  for (int k = 0; k < result.days; ++k) {
-    const auto run = static_cast<std::uint32_t>(k) * n_trials + static_cast<std::uint32_t>(trial);
-    const std::int64_t day = sim::day_of(study, run);
-    const sim::HomeDay drawn = sim::draw_home_day(household, study.seed(), run, day);
-    result.working_days += is_working_day(day) ? 1 : 0;
-    result.visits += static_cast<int>(drawn.visits.size());
-    for (std::size_t i = 0; i < result.residents.size(); ++i) add_day(result.residents[i], drawn.residents[i]);
-  }
-  const double n = std::max(1, result.days);
-  for (ExpectedResident& resident : result.residents) {
-    resident.mean_up_s /= n, resident.mean_to_bed_s /= n;
-    for (double& mean_s : resident.mean_s) mean_s /= n;
-  }
-  return result;
-}
-
-void print(std::ostream& out, const HomeOutlook& outlook) {
-  out << "household: " << counted(static_cast<std::size_t>(outlook.days), "day") << " from "
-      << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
-      << counted(static_cast<std::size_t>(outlook.working_days), "working day")
-      << "), each from 04:00 to 04:00; means as drawn, before anybody has walked\n";
-  for (const ExpectedResident& resident : outlook.residents) print_resident(out, resident);
-  out << "  visits: " << outlook.visits << "\n\n";
-}
-
+/// What residents do where they are, since the scene has no place for it, and who can't get out of bed. Empty without
+/// a household.
 std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
   const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
   const auto home = std::ranges::find_if(study.trials(), has_household);
@@ -342,13 +317,12 @@ void print_person(std::ostream& out, const ExpectedPerson& person) {
 
 }  // namespace
 
-ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days) {
-  const sim::TrialModel& model = study.trials()[trial];
+ScheduleOutlook outlook(const sim::CompiledStudy& study) {
+  const sim::TrialModel& model = study.trials().front();
   const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
   ScheduleOutlook result;
-  result.first_day = sim::day_of(study, static_cast<std::uint32_t>(trial));
-  result.days =
-      static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
+  result.first_day = sim::day_of(study, 0);
+  result.days = std::min(study.n_runs() / n_trials, most_days);
   std::vector<std::size_t> staff;
   for (std::size_t i = 0; i < model.people.size(); ++i) {
     const auto& part = model.people[i].spec.part;
@@ -359,8 +333,7 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
   double cleaning_s = 0.0;
   int cleanings = 0;
   std::set<std::string> seats;
-  for (int k = 0; k < result.days; ++k) {
-    const auto run = static_cast<std::uint32_t>(k) * n_trials + static_cast<std::uint32_t>(trial);
+  for (std::uint32_t run = 0; run < result.days * n_trials; run += n_trials) {
     const std::int64_t day = sim::day_of(study, run);
     const sim::DayDraw draw = sim::draw_times(study, run);
     result.working_days += is_working_day(day) ? 1 : 0;
@@ -394,11 +367,9 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
 void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::CompiledStudy& study) {
   constexpr std::size_t most_told = 12;
   const ScheduleSpec& schedule = *study.trials().front().schedule;
-  out << "schedule: " << counted(static_cast<std::size_t>(outlook.days), "day") << " from "
-      << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
-      << counted(static_cast<std::size_t>(outlook.working_days), "working day") << "), each from "
-      << clock(3600.0 * schedule.from_h) << " to " << clock(3600.0 * schedule.to_h)
-      << "; times as drawn for whole days, before anybody has walked\n";
+  out << "schedule: " << counted(outlook.days, "day") << " from " << clock_text(outlook.first_day, 0.0).substr(0, 10)
+      << " (" << counted(outlook.working_days, "working day") << "), each from " << clock(3600.0 * schedule.from_h)
+      << " to " << clock(3600.0 * schedule.to_h) << "; times as drawn for whole days, before anybody has walked\n";
   for (const ExpectedPerson& person : outlook.staff) print_person(out, person);
   if (!schedule.meetings.empty()) out << "  meetings: " << outlook.meetings.size() << '\n';
   for (std::size_t i = 0; i < std::min(most_told, outlook.meetings.size()); ++i) {
@@ -625,9 +596,9 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {
     if (script.trials.front().schedule->household) {
-      print(out, home_outlook(model.compiled(), 0));
+      print_home(out, model.compiled());
     } else {
-      print(out, outlook(model.compiled(), 0), model.compiled());
+      print(out, outlook(model.compiled()), model.compiled());
     }
   }
   if (!script.trials.empty() && script.trials.front().occupancy)
@@ -645,8 +616,7 @@ CheckReport check_study(const Model& model) {
   report.sight = studies::look_around(model);
   const sim::CompiledStudy& study = model.compiled();
   const studies::Worker worker = studies::worker_of(study.trials());
-  report.work =
-      studies::watch_sitters({study.scene(), study.sensing(), study.array(), study.tracer(), study.seed()}, worker);
+  report.work = studies::watch_sitters(studies::room_of(study), worker);
   std::ostringstream text;
   studies::print_study(text, model, report, worker);
   report.text = std::move(text).str();

@@ -26,18 +26,46 @@
 #include "show/run_page.hpp"
 #include "surveys/picture.hpp"
 
-// What the functions of pirsim/look.hpp share.
-
 namespace pirsim::studies {
+namespace {
+
+// What pictures, pages and films share.
 
 /// Throws Error(usage).
-void require_run(const Model& model, std::uint32_t run);
-/// Throws Error(usage) that names the argument.
-void require(const char* what, double value, const NumberRange& range);
-/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
-[[nodiscard]] std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names);
+void require_run(const Model& model, std::uint32_t run) {
+  if (run < model.n_runs()) return;
+  throw Error(ErrorCode::usage, "run " + std::to_string(run) + ": the study has " + std::to_string(model.n_runs()) +
+                                    " runs, numbered from 0");
+}
 
-namespace {
+/// Throws Error(usage) that names the argument.
+void require(const char* what, double value, const NumberRange& range) {
+  if (range.holds(value)) return;
+  std::ostringstream got;
+  got << what << ": expected " << range.text() << ", got " << value;
+  throw Error(ErrorCode::usage, got.str());
+}
+
+/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
+std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
+  std::vector<std::size_t> indices;
+  for (const std::string& name : names) {
+    if (name == "none") continue;
+    bool found = name == "all";
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (name != "all" && name != known[i]) continue;
+      indices.push_back(i);
+      found = true;
+    }
+    if (!found)
+      throw Error(ErrorCode::usage, "beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
+  }
+  return indices;
+}
+
+// Films.
 
 io::ExportedPerson without_keys(const sim::Actor& actor) {
   io::ExportedPerson person{actor.person().spec.id, {}, {}};
@@ -97,72 +125,7 @@ class Peaks {
   std::vector<double> peaks_;
 };
 
-}  // namespace
-
-double expected_bytes(std::size_t n_people, double seconds, double keys_per_s) {
-  // As the glTF has them: a time; of each person a scale, of each part a place and a rotation, in single precision.
-  constexpr double time_bytes = 4.0, person_bytes = 12.0, part_bytes = 12.0 + 16.0;
-  return seconds * keys_per_s *
-         (time_bytes + static_cast<double>(n_people) * (person_bytes + body::n_parts * part_bytes));
-}
-
-Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
-  const SensingInForce& sensing = model.compiled().sensing();
-  const int rate = sensing.tick_rate_hz;
-  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
-  const double window_s = model.tick_s() * sensing.ticks_per_window;
-  const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
-
-  State state(model, run);
-  Film result;
-  result.run.title = model.script().name + ", trial " + model.trial_of(run);
-  result.run.meshes = model.compiled().scene().meshes;
-  for (const std::size_t sensor : spec.beams_of) result.run.beams.push_back(beams(model, state, sensor));
-  const auto end_window = [&] {
-    if (spec.simulated) spec.simulated(window_s);
-  };
-  while (!state.finished() && time_s(state) + window_s <= spec.from_s) {
-    // As in a run without a film, what nobody is in is passed over.
-    if (!sim::pass_empty_window(model.compiled(), state.run_state())) step(model, state);
-    end_window();
-  }
-
-  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
-  for (const sim::Actor& actor : actors) {
-    result.run.people.push_back(without_keys(actor));
-    result.run.people.back().number = result.run.people.size() - 1;
-  }
-  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
-  for (std::size_t i = 0; i < leaves.size(); ++i)
-    result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
-  result.signals_v.resize(model.scene().sensors.size());
-  Peaks peaks(result.signals_v.size());
-  const std::int64_t first_tick = state.tick();
-  while (true) {
-    peaks.look(state);
-    const bool ends = state.finished() || time_s(state) >= spec.to_s;
-    if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
-      result.run.key_times_s.push_back(time_s(state));
-      for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
-      for (std::size_t i = 0; i < leaves.size(); ++i)
-        result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
-      result.active_zones.push_back(members(state.zones()));
-      peaks.take(state, result.signals_v);
-    }
-    if (ends) return result;
-    if (!step_tick(model, state)) continue;
-    result.rows.push_back(state.sample());
-    end_window();
-  }
-}
-
-}  // namespace pirsim::studies
-
 // The page that plays a run.
-
-namespace pirsim {
-namespace studies {
-namespace {
 
 /// Of a longer run a page shows a part, unless its user asks for more: it would be large and take long to load.
 constexpr double longest_unasked_s = 1200.0;
@@ -340,30 +303,7 @@ Stretch find_stretch(const Model& model, const PageRequest& request, double wind
   return stretch;
 }
 
-}  // namespace
-}  // namespace studies
-
-Page page_of(const Model& model, const PageRequest& request) {
-  using namespace studies;
-  require_run(model, request.run);
-  require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
-  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
-  const Stretch stretch = find_stretch(model, request, window_s);
-  io::RunPage page = run_page(model, request, stretch);
-  page.run_s = stretch.run_s;
-  page.window_s = window_s;
-  if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
-  std::ostringstream text;
-  io::write_run_page(text, page);
-  const auto& keys = page.run.key_times_s;
-  const bool is_busiest_part = page.run_s > longest_unasked_s && !request.from_s && !request.to_s;
-  return {std::move(text).str(), page.about, keys.front(), keys.back(), page.run_s, is_busiest_part};
-}
-
-// Pictures and films of a run for who asks by name and number.
-
-namespace studies {
-namespace {
+// Pictures.
 
 double time_s(const Model& model, const State& state) { return static_cast<double>(state.tick()) * model.tick_s(); }
 
@@ -411,38 +351,83 @@ std::vector<Mark> marks_named(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void require_run(const Model& model, std::uint32_t run) {
-  if (run < model.n_runs()) return;
-  throw Error(ErrorCode::usage, "run " + std::to_string(run) + ": the study has " + std::to_string(model.n_runs()) +
-                                    " runs, numbered from 0");
+double expected_bytes(std::size_t n_people, double seconds, double keys_per_s) {
+  // As the glTF has them: a time; of each person a scale, of each part a place and a rotation, in single precision.
+  constexpr double time_bytes = 4.0, person_bytes = 12.0, part_bytes = 12.0 + 16.0;
+  return seconds * keys_per_s *
+         (time_bytes + static_cast<double>(n_people) * (person_bytes + body::n_parts * part_bytes));
 }
 
-void require(const char* what, double value, const NumberRange& range) {
-  if (range.holds(value)) return;
-  std::ostringstream got;
-  got << what << ": expected " << range.text() << ", got " << value;
-  throw Error(ErrorCode::usage, got.str());
-}
+Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
+  const SensingInForce& sensing = model.compiled().sensing();
+  const int rate = sensing.tick_rate_hz;
+  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
+  const double window_s = model.tick_s() * sensing.ticks_per_window;
+  const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
 
-std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
-  std::vector<std::size_t> indices;
-  for (const std::string& name : names) {
-    if (name == "none") continue;
-    bool found = name == "all";
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      if (name != "all" && name != known[i]) continue;
-      indices.push_back(i);
-      found = true;
-    }
-    if (!found)
-      throw Error(ErrorCode::usage, "beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
+  State state(model, run);
+  Film result;
+  result.run.title = model.script().name + ", trial " + model.trial_of(run);
+  result.run.meshes = model.compiled().scene().meshes;
+  for (const std::size_t sensor : spec.beams_of) result.run.beams.push_back(beams(model, state, sensor));
+  const auto end_window = [&] {
+    if (spec.simulated) spec.simulated(window_s);
+  };
+  while (!state.finished() && time_s(state) + window_s <= spec.from_s) {
+    // As in a run without a film, what nobody is in is passed over.
+    if (!sim::pass_empty_window(model.compiled(), state.run_state())) step(model, state);
+    end_window();
   }
-  return indices;
+
+  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
+  for (const sim::Actor& actor : actors) {
+    result.run.people.push_back(without_keys(actor));
+    result.run.people.back().number = result.run.people.size() - 1;
+  }
+  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
+  result.signals_v.resize(model.scene().sensors.size());
+  Peaks peaks(result.signals_v.size());
+  const std::int64_t first_tick = state.tick();
+  while (true) {
+    peaks.look(state);
+    const bool ends = state.finished() || time_s(state) >= spec.to_s;
+    if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
+      result.run.key_times_s.push_back(time_s(state));
+      for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
+      for (std::size_t i = 0; i < leaves.size(); ++i)
+        result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
+      result.active_zones.push_back(members(state.zones()));
+      peaks.take(state, result.signals_v);
+    }
+    if (ends) return result;
+    if (!step_tick(model, state)) continue;
+    result.rows.push_back(state.sample());
+    end_window();
+  }
 }
 
-}  // namespace studies
+}  // namespace pirsim::studies
+
+namespace pirsim {
+
+Page page_of(const Model& model, const PageRequest& request) {
+  using namespace studies;
+  require_run(model, request.run);
+  require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
+  const Stretch stretch = find_stretch(model, request, window_s);
+  io::RunPage page = run_page(model, request, stretch);
+  page.run_s = stretch.run_s;
+  page.window_s = window_s;
+  if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
+  std::ostringstream text;
+  io::write_run_page(text, page);
+  const auto& keys = page.run.key_times_s;
+  const bool is_busiest_part = page.run_s > longest_unasked_s && !request.from_s && !request.to_s;
+  return {std::move(text).str(), page.about, keys.front(), keys.back(), page.run_s, is_busiest_part};
+}
 
 Picture picture_of(const Model& model, const PictureRequest& request) {
   studies::require("field_of_view_deg", request.field_of_view_deg, {.min = 1.0, .max = 170.0});

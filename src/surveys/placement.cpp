@@ -372,94 +372,39 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
 namespace pirsim::studies {
 namespace {
 
-/// How many of the chosen cover each thing.
-class Coverings {
- public:
-  explicit Coverings(const Cover& cover) : cover_(cover), times_(cover.worth.size(), 0) {}
-
-  void add(std::size_t candidate) {
-    for (const std::uint32_t thing : cover_.covered[candidate]) ++times_[thing];
+/// (n_things)
+std::vector<bool> covered_by(const Cover& cover, const Chosen& chosen) {
+  std::vector<bool> is_covered(cover.worth.size());
+  for (const std::size_t candidate : chosen) {
+    for (const std::uint32_t thing : cover.covered[candidate]) is_covered[thing] = true;
   }
-  void remove(std::size_t candidate) {
-    for (const std::uint32_t thing : cover_.covered[candidate]) --times_[thing];
-  }
-  /// Of a candidate that isn't chosen.
-  [[nodiscard]] std::uint64_t gain(std::size_t candidate) const {
-    std::uint64_t sum = 0;
-    for (const std::uint32_t thing : cover_.covered[candidate]) sum += times_[thing] == 0 ? cover_.worth[thing] : 0;
-    return sum;
-  }
-  /// The first that gains most. Takes none of `taken`.
-  [[nodiscard]] std::size_t best(const std::vector<std::size_t>& taken) const {
-    std::size_t best = cover_.covered.size();
-    std::uint64_t most = 0;
-    for (std::size_t i = 0; i < cover_.covered.size(); ++i) {
-      if (std::ranges::find(taken, i) != taken.end()) continue;
-      const std::uint64_t gained = gain(i);
-      if (best == cover_.covered.size() || gained > most) {
-        best = i;
-        most = gained;
-      }
-    }
-    return best;
-  }
-
- private:
-  const Cover& cover_;
-  std::vector<std::size_t> times_;
-};
+  return is_covered;
+}
 
 }  // namespace
 
-std::uint64_t Cover::worth_of(const std::vector<std::size_t>& chosen) const {
-  Coverings coverings(*this);
-  std::uint64_t sum = 0;
-  for (const std::size_t candidate : chosen) {
-    sum += coverings.gain(candidate);
-    coverings.add(candidate);
-  }
-  return sum;
+std::uint64_t Cover::worth_of(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  return std::inner_product(is_covered.begin(), is_covered.end(), worth.begin(), std::uint64_t{0});
 }
 
-std::vector<std::size_t> greedy_cover(const Cover& cover, std::size_t n) {
-  Coverings coverings(cover);
-  std::vector<std::size_t> chosen;
-  while (chosen.size() < n) {
-    chosen.push_back(coverings.best(chosen));
-    coverings.add(chosen.back());
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> exchanged(const Cover& cover, std::vector<std::size_t> chosen) {
-  Coverings coverings(cover);
-  for (const std::size_t candidate : chosen) coverings.add(candidate);
-  for (bool gains = chosen.size() < cover.covered.size(); gains;) {
-    gains = false;
-    for (std::size_t& candidate : chosen) {
-      coverings.remove(candidate);
-      const std::size_t other = coverings.best(chosen);
-      if (coverings.gain(other) > coverings.gain(candidate)) {
-        candidate = other;
-        gains = true;
-      }
-      coverings.add(candidate);
+std::size_t Cover::best_addition(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  std::vector<std::uint64_t> gains;  // 0: is chosen; else by 1 more
+  for (std::size_t candidate = 0; candidate < covered.size(); ++candidate) {
+    const bool is_chosen = std::ranges::find(chosen, candidate) != chosen.end();
+    std::uint64_t& gain = gains.emplace_back(is_chosen ? 0 : 1);
+    for (std::size_t i = 0; i < covered[candidate].size() && !is_chosen; ++i) {
+      const std::uint32_t thing = covered[candidate][i];
+      gain += is_covered[thing] ? 0 : worth[thing];
     }
   }
-  return chosen;
+  return static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
 }
 
-std::vector<std::size_t> best_cover(const Cover& cover, const std::vector<std::size_t>& start) {
-  std::vector<std::size_t> greedy = exchanged(cover, greedy_cover(cover, start.size()));
-  std::vector<std::size_t> other = exchanged(cover, start);
-  return cover.worth_of(other) > cover.worth_of(greedy) ? other : greedy;
-}
-
-const LightSums& LightSearch::of_area(std::size_t area, const Sensors& chosen) {
-  Sensors own;
-  for (const std::size_t sensor : chosen) {
-    if (rows_.area_of[sensor] == area) own.push_back(sensor);
-  }
+const LightSums& LightSearch::of_area(std::size_t area, const Chosen& chosen) {
+  Chosen own;
+  std::ranges::copy_if(chosen, std::back_inserter(own), [&](std::size_t i) { return rows_.area_of[i] == area; });
   std::ranges::sort(own);
   const auto known = known_[area].find(own);
   if (known != known_[area].end()) return known->second;
@@ -467,54 +412,26 @@ const LightSums& LightSearch::of_area(std::size_t area, const Sensors& chosen) {
   return known_[area].emplace(std::move(own), sums).first->second;
 }
 
-LightSums LightSearch::of(const Sensors& chosen) {
+LightSums LightSearch::of(const Chosen& chosen) {
   LightSums sums;
   for (std::size_t area = 0; area < rows_.areas.size(); ++area) sums += of_area(area, chosen);
   return sums;
 }
 
-std::size_t LightSearch::best_addition(Sensors chosen) {
+std::size_t LightSearch::best_addition(const Chosen& chosen) {
   std::size_t best = rows_.sensors.size();
   LightSums least;
-  const Sensors taken = chosen;
-  chosen.push_back(0);
+  Chosen with_one = chosen;
+  with_one.push_back(0);
   for (std::size_t i = 0; i < rows_.sensors.size(); ++i) {
-    if (std::ranges::find(taken, i) != taken.end()) continue;
-    chosen.back() = i;
-    const LightSums sums = of(chosen);
+    if (std::ranges::find(chosen, i) != chosen.end()) continue;
+    with_one.back() = i;
+    const LightSums sums = of(with_one);
     if (best < rows_.sensors.size() && !sums.better_than(least)) continue;
     best = i;
     least = sums;
   }
   return best;
-}
-
-std::vector<std::size_t> LightSearch::greedy(std::size_t n) {
-  Sensors chosen;
-  while (chosen.size() < n) chosen.push_back(best_addition(chosen));
-  return chosen;
-}
-
-std::vector<std::size_t> LightSearch::exchanged(Sensors chosen) {
-  for (bool gains = chosen.size() < rows_.sensors.size(); gains;) {
-    gains = false;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      Sensors others = chosen;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      Sensors changed = chosen;
-      changed[i] = best_addition(others);
-      if (!of(changed).better_than(of(chosen))) continue;
-      chosen = std::move(changed);
-      gains = true;
-    }
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> LightSearch::best(const Sensors& start) {
-  Sensors greedy_set = exchanged(greedy(start.size()));
-  Sensors other = exchanged(start);
-  return of(other).better_than(of(greedy_set)) ? other : greedy_set;
 }
 
 namespace {
@@ -607,66 +524,54 @@ void add_noticed(Cover& cover, std::size_t first, const WorkReport& work, const 
   cover.worth = worth(work.seats.size(), map.counts.size() / n_sensors);
 }
 
-std::vector<double> found_by_seats(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                   const std::vector<double>& even, unsigned threads, const Tried& tried) {
-  std::vector<double> shares = even;
-  const std::vector<double> places = even_shares(search.evaluations);
-  shares.insert(shares.end(), places.begin(), places.end());
-  std::vector<std::size_t> start(even.size());
-  std::iota(start.begin(), start.end(), std::size_t{0});
-  std::vector<double> found;
-  for (const std::size_t i : best_cover(cover_of(scene, spec, search, shares, threads, tried), start)) {
-    found.push_back(shares[i]);
-  }
-  std::ranges::sort(found);
-  return found;
+/// Even spacing and what was found, judged.
+PlacementSearch judged(const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search,
+                       const std::vector<double>& found, int evaluations, unsigned threads) {
+  const std::vector<double> even = even_shares(search.n_sensors);
+  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
+          score(scene, coverage, sensors_along(search, found, "found"), threads), evaluations};
 }
 
 PlacementSearch search_by_area(const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search,
                                unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
   Objective objective{scene, coverage, search, threads, tried, 0, -1.0, {}};
-  static_cast<void>(objective.area(even));
+  static_cast<void>(objective.area(even_shares(search.n_sensors)));
   maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
   maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);
-  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, coverage, sensors_along(search, objective.best, "found"), threads), objective.evaluations};
-}
-
-PlacementSearch search_by_seats(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
-  const std::vector<double> found = found_by_seats(scene, spec, search, even, threads, tried);
-  return {score(scene, spec.coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
+  return judged(scene, coverage, search, objective.best, objective.evaluations, threads);
 }
 
 /// All places hang in one room at once: the people are simulated once, and each place has its own column of motion.
-std::vector<double> found_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                   const std::vector<double>& even, unsigned threads, const Tried& tried) {
-  std::vector<double> shares = even;
-  const std::vector<double> places = even_shares(search.evaluations);
-  shares.insert(shares.end(), places.begin(), places.end());
+Chosen best_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+                     const std::vector<double>& shares, const Chosen& start, unsigned threads, const Tried& tried) {
   std::size_t n_told = 0;
   const auto tell = [&](std::size_t n_done, std::size_t n_runs) {
-    for (; n_told < places.size() * n_done / n_runs; ++n_told) tried();
+    for (; n_told < (shares.size() - start.size()) * n_done / n_runs; ++n_told) tried();
   };
   const LightRows rows =
       light_rows(with_set(scene, sensors_along(search, shares, "")), *spec.light, spec.coverage.sensing, threads, tell);
-  std::vector<std::size_t> start(even.size());
-  std::iota(start.begin(), start.end(), std::size_t{0});
-  std::vector<double> found;
-  for (const std::size_t i : LightSearch(rows, *spec.light).best(start)) found.push_back(shares[i]);
-  std::ranges::sort(found);
-  return found;
+  LightSearch by_light(rows, *spec.light);
+  return best_of(by_light, start);
 }
 
-PlacementSearch search_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
-  const std::vector<double> found = found_by_light(scene, spec, search, even, threads, tried);
-  return {score(scene, spec.coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
+/// Chooses among single places, of which the first are those of even spacing.
+PlacementSearch search_among_places(const SceneSpec& scene, const PlacementSpec& spec,
+                                    const PlacementSearchSpec& search, unsigned threads, const Tried& tried) {
+  std::vector<double> shares = even_shares(search.n_sensors);
+  Chosen chosen(shares.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  const std::vector<double> places = even_shares(search.evaluations);
+  shares.insert(shares.end(), places.begin(), places.end());
+  if (spec.by == PlacementAim::seats) {
+    const Cover cover = cover_of(scene, spec, search, shares, threads, tried);
+    chosen = best_of(cover, chosen);
+  } else {
+    chosen = best_by_light(scene, spec, search, shares, chosen, threads, tried);
+  }
+  std::vector<double> found;
+  for (const std::size_t i : chosen) found.push_back(shares[i]);
+  std::ranges::sort(found);
+  return judged(scene, spec.coverage, search, found, search.evaluations, threads);
 }
 
 }  // namespace
@@ -710,15 +615,8 @@ Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const Placemen
 
 PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
                                  unsigned threads, const Tried& tried) {
-  switch (spec.by) {
-    case PlacementAim::area:
-      return search_by_area(scene, spec.coverage, search, threads, tried);
-    case PlacementAim::seats:
-      return search_by_seats(scene, spec, search, threads, tried);
-    case PlacementAim::false_off:
-      return search_by_light(scene, spec, search, threads, tried);
-  }
-  throw Error(ErrorCode::internal, "unknown aim of a placement search");
+  if (spec.by == PlacementAim::area) return search_by_area(scene, spec.coverage, search, threads, tried);
+  return search_among_places(scene, spec, search, threads, tried);
 }
 
 }  // namespace pirsim::studies
