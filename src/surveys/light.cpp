@@ -8,15 +8,18 @@
 #include <utility>
 #include <vector>
 
+#include "engine/sim/compiled_study.hpp"
 #include "files/disk/file.hpp"
 #include "files/read/reader_parts.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/check_scene.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/control.hpp"
+#include "pirsim/look.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
+#include "surveys/sight.hpp"
 
 // What is summed up of a light, and figures over days.
 
@@ -525,6 +528,7 @@ struct Control::State {
   std::optional<int> replicate{};  ///< none: a run begins
   std::string trial{}, day{};
   bool has_clock = false;
+  std::int64_t n_missing = 0;
 };
 
 Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People people)
@@ -547,6 +551,7 @@ Control::~Control() = default;
 Control::Control(Control&&) noexcept = default;
 
 void Control::begin_run() noexcept { state_->replicate.reset(); }
+void Control::note_missing(std::int64_t n_rows) noexcept { state_->n_missing += n_rows; }
 
 LitRow Control::add(const Sample& row, std::string_view day) {
   State& state = *state_;
@@ -601,6 +606,15 @@ Costs Control::finish() const {
            "light '" + light.id + "': the sensors of all areas switch it; name its `sensors`, or say --scene"});
     }
   }
+  if (state_->n_missing > 0) {
+    costs.remarks.push_back({Severity::warning,
+                             {},
+                             counted(static_cast<std::size_t>(state_->n_missing), "row") + " of " +
+                                 shortest_number(state_->window_s) +
+                                 " s are missing between those that are there: nothing is known of them"});
+  }
+  if (state_->people == People::unknown)
+    costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
   return costs;
 }
 
@@ -732,7 +746,9 @@ Advice advise(const LightCosts& light) {
 
 // Lights of a scene's areas.
 
-RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
+namespace {
+
+RuleSpec rule_of_areas(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
   RuleSpec rule{name, {}};
   const Areas areas(scene);
   if (areas.empty()) rule.lights.emplace_back();
@@ -753,13 +769,52 @@ RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Is
   return rule;
 }
 
-void name_sensors(RuleSpec& rule, const SceneSpec& scene) {
-  std::vector<Issue> left_out;  // areas without sensors: told where the light stays without
-  const RuleSpec of_scene = rule_of(scene, rule.name, left_out);
-  for (LightSpec& light : rule.lights) {
+}  // namespace
+
+RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,
+                  std::vector<Issue>& remarks) {
+  if (scene == nullptr) return given ? std::move(*given) : RuleSpec{"any sensor", {{}}};
+  std::vector<Issue> left_out;  // areas without sensors: of a rule they are told where the light stays without
+  RuleSpec of_scene = rule_of_areas(*scene, name, given ? left_out : remarks);
+  if (!given) return of_scene;
+  for (LightSpec& light : given->lights) {
     const auto same = std::ranges::find(of_scene.lights, light.area, &LightSpec::area);
     if (light.sensors.empty() && !light.area.empty() && same != of_scene.lights.end()) light.sensors = same->sensors;
   }
+  return std::move(*given);
+}
+
+std::vector<Issue> deaf_seats(const RuleSpec& rule, const Model& model) {
+  const SceneSpec& scene = model.scene();
+  const Areas areas(scene);
+  const sim::CompiledStudy& study = model.compiled();
+  const WorkReport work = studies::watch_sitters(studies::room_of(study), studies::worker_of(study.trials()));
+  const auto is_here = [&](const std::string& sensor) {
+    return std::ranges::find(scene.sensors, sensor, &SensorSpec::id) != scene.sensors.end();
+  };
+  std::vector<Issue> remarks;
+  for (const LightSpec& light : rule.lights) {
+    if (!std::ranges::all_of(light.sensors, is_here)) continue;  // the rows are of other sensors than the scene's
+    const auto switches = [&](const SensorSpec& sensor) {
+      return light.sensors.empty() || std::ranges::find(light.sensors, sensor.id) != light.sensors.end();
+    };
+    std::vector<std::string> unnoticed;
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
+      const SeatSpec& place = *std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);
+      if (!light.area.empty() && areas.name_at(floor_point(place.world_from_seat.origin)) != light.area) continue;
+      bool is_noticed = false;
+      for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+        is_noticed = is_noticed || (switches(scene.sensors[i]) && work.notice(seat, i).seconds > 0);
+      if (!is_noticed) unnoticed.push_back(place.id);
+    }
+    if (unnoticed.empty()) continue;
+    remarks.push_back({Severity::warning,
+                       {scene.name},
+                       "light '" + light.id + "': none of its sensors notices somebody at work in " +
+                           joined(unnoticed, ", ") +
+                           ": who is alone there sits in the dark at any delay; `pirsim check` says why"});
+  }
+  return remarks;
 }
 
 namespace {
