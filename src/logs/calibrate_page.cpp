@@ -249,13 +249,13 @@ double mean_count(std::span<const double> probabilities) {
 }
 
 /// Readings of one date, or all of a log without dates.
-struct Day {
+struct CountedDay {
   std::string name;
   std::size_t begin = 0, end = 0;
 };
 
-std::vector<Day> days_of(const LogRows& rows) {
-  std::vector<Day> days;
+std::vector<CountedDay> days_of(const LogRows& rows) {
+  std::vector<CountedDay> days;
   for (std::size_t i = 0; i < rows.n_windows(); ++i) {
     const std::string date = rows.clock == LogClock::elapsed ? "" : to_text(rows.begin[i], rows.clock).substr(0, 10);
     if (days.empty() || days.back().name != date) days.push_back({date, i, i});
@@ -265,7 +265,7 @@ std::vector<Day> days_of(const LogRows& rows) {
 }
 
 /// Stretches in which nobody knows the number.
-std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const Day& day) {
+std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const CountedDay& day) {
   std::vector<io::SeriesChart::Phase> phases;
   for (std::size_t i = day.begin; i < day.end;) {
     std::size_t end = i;
@@ -285,7 +285,7 @@ Interval likely(const LogCounts& counts, std::size_t reading) {
           static_cast<double>(counts.estimates.quantile(reading, 0.95))};
 }
 
-io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
+io::SeriesChart chart_of(const LogCounts& counts, const CountedDay& day) {
   const LogRows& rows = counts.rows;
   io::SeriesChart chart;
   chart.title = day.name.empty() ? "The log" : day.name;
@@ -312,11 +312,11 @@ io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
 }
 
 /// Hours with each count.
-io::Table hours_table(const LogCounts& counts, const std::vector<Day>& days) {
+io::Table hours_table(const LogCounts& counts, const std::vector<CountedDay>& days) {
   io::Table table{{"day"}, {}};
   for (std::size_t n = 0; n < n_counts(counts); ++n) table.headings.push_back(counted(n, "person", "people") + ", h");
   table.headings.emplace_back("unknown, h");
-  for (const Day& day : days) {
+  for (const CountedDay& day : days) {
     std::vector<double> hours(n_counts(counts) + 1, 0.0);
     for (std::size_t i = day.begin; i < day.end; ++i) {
       const std::size_t column =
@@ -476,7 +476,7 @@ void write_counts(std::ostream& out, const LogCounts& counts) {
 
 void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
                        const std::string& made_by) {
-  const std::vector<Day> days = days_of(counts.rows);
+  const std::vector<CountedDay> days = days_of(counts.rows);
   constexpr std::size_t most_days = 31;
   io::Report report;
   report.title = "How many people were there?";

@@ -174,11 +174,11 @@ std::optional<double> hold_told_by(const LogLengths& pulses) {
 // ---------------------------------------------------------------------------------------------------------------- time
 
 /// Seconds of each hour of the day.
-struct Day {
+struct HoursOfDay {
   std::array<double, 24> known{}, motion{};
 };
 
-void add_to_day(const Log& log, const LogRun& run, Day& day) {
+void add_to_day(const Log& log, const LogRun& run, HoursOfDay& day) {
   constexpr std::int64_t us_per_hour = 3600 * us_per_s;
   for (std::int64_t from = run.from_us; from < run.to_us;) {
     const std::int64_t local = log.moment(from).local_us();
@@ -196,7 +196,7 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
   facts.name = track.name;
   std::vector<LogRun> runs;
   each_stretch(log, track, [&](const LogRun& run) { runs.push_back(run); });
-  Day day;
+  HoursOfDay day;
   bool was_on = false, was_off = false;
   for (const LogRun& run : runs) {
     const double s = in_seconds(run.to_us - run.from_us);
@@ -221,14 +221,14 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
 
 // ------------------------------------------------------------------------------------------------------ false triggers
 
-struct Stretch {
+struct TimeSpan {
   std::int64_t from_us, to_us;
 };
 
 /// When the count says that nobody is there, but not near to other counts, which may be late.
-std::vector<Stretch> empty_times(const Log& log) {
+std::vector<TimeSpan> empty_times(const Log& log) {
   constexpr std::int64_t apart_us = 300 * us_per_s;  // assumed: a count every 30 s, people who linger, a sensor's hold
-  std::vector<Stretch> found;
+  std::vector<TimeSpan> found;
   if (!log.people) return found;
   each_stretch(log, *log.people, [&](const LogRun& run) {
     if (run.value == 0 && run.to_us - run.from_us > 2 * apart_us)
@@ -238,13 +238,13 @@ std::vector<Stretch> empty_times(const Log& log) {
 }
 
 /// What a sensor did in each of these stretches, which are in order of time.
-struct InStretch {
+struct InTimeSpan {
   std::size_t n_onsets = 0;
   double known_h = 0.0;
 };
 
-std::vector<InStretch> done_in(const Log& log, const LogTrack& track, const std::vector<Stretch>& stretches) {
-  std::vector<InStretch> done(stretches.size());
+std::vector<InTimeSpan> done_in(const Log& log, const LogTrack& track, const std::vector<TimeSpan>& stretches) {
+  std::vector<InTimeSpan> done(stretches.size());
   std::size_t first = 0;
   std::int32_t before = log_state::unknown;
   each_stretch(log, track, [&](const LogRun& run) {
@@ -263,9 +263,9 @@ std::vector<InStretch> done_in(const Log& log, const LogTrack& track, const std:
 }
 
 /// Midnight to five, of each day that the log has.
-std::vector<Stretch> nights_of(const Log& log) {
+std::vector<TimeSpan> nights_of(const Log& log) {
   constexpr std::int64_t night_us = 5 * 3600 * us_per_s;
-  std::vector<Stretch> nights;
+  std::vector<TimeSpan> nights;
   if (log.clock == LogClock::elapsed) return nights;
   const std::int64_t first_local = log.moment(log.begin_us).local_us();
   for (std::int64_t midnight = first_local - first_local % us_per_day;; midnight += us_per_day) {
@@ -276,11 +276,11 @@ std::vector<Stretch> nights_of(const Log& log) {
 }
 
 /// The third of all nights that are known in which motion begins least often; none of less than three.
-std::vector<Stretch> quiet_nights(const Log& log) {
-  const std::vector<Stretch> nights = nights_of(log);
-  std::vector<InStretch> done(nights.size());
+std::vector<TimeSpan> quiet_nights(const Log& log) {
+  const std::vector<TimeSpan> nights = nights_of(log);
+  std::vector<InTimeSpan> done(nights.size());
   for (const LogTrack& track : log.sensors) {
-    const std::vector<InStretch> more = done_in(log, track, nights);
+    const std::vector<InTimeSpan> more = done_in(log, track, nights);
     for (std::size_t i = 0; i < nights.size(); ++i) {
       done[i].n_onsets += more[i].n_onsets;
       done[i].known_h += more[i].known_h;
@@ -296,18 +296,18 @@ std::vector<Stretch> quiet_nights(const Log& log) {
   std::ranges::stable_sort(known, {}, [&](std::size_t i) { return done[i].n_onsets; });
   known.resize(known.size() / 3);
   std::ranges::sort(known);
-  std::vector<Stretch> chosen;
+  std::vector<TimeSpan> chosen;
   for (const std::size_t i : known) chosen.push_back(nights[i]);
   return chosen;
 }
 
 void add_false_triggers(const Log& log, LogFacts& facts) {
-  std::vector<Stretch> times = empty_times(log);
+  std::vector<TimeSpan> times = empty_times(log);
   const auto from = times.empty() ? LogFalseTriggers::From::nights : LogFalseTriggers::From::nobody;
   if (times.empty()) times = quiet_nights(log);
   for (std::size_t i = 0; i < log.sensors.size(); ++i) {
     LogFalseTriggers found{from, 0.0, 0};
-    for (const InStretch& done : done_in(log, log.sensors[i], times)) {
+    for (const InTimeSpan& done : done_in(log, log.sensors[i], times)) {
       found.hours += done.known_h;
       found.n += done.n_onsets;
     }

@@ -27,7 +27,7 @@ class LogRemarks {
   template <typename GiveMessage>
   void add(std::string_view kind, const Where& where, GiveMessage message) {
     ++n_;
-    const auto known = std::ranges::find(kinds_, kind, &Kind::name);
+    const auto known = std::ranges::find(kinds_, kind, &Oddity::name);
     if (known == kinds_.end())
       kinds_.push_back({std::string(kind), where, message(), 1});
     else
@@ -36,7 +36,7 @@ class LogRemarks {
   [[nodiscard]] std::uint64_t count() const noexcept { return n_; }
   [[nodiscard]] std::vector<Issue> issues(Severity severity) const {
     std::vector<Issue> issues;
-    for (const Kind& kind : kinds_) {
+    for (const Oddity& kind : kinds_) {
       const std::string more = kind.n == 1 ? "" : "; " + std::to_string(kind.n - 1) + " more like this";
       issues.push_back({severity, kind.where, kind.message + more});
     }
@@ -44,13 +44,13 @@ class LogRemarks {
   }
 
  private:
-  struct Kind {
+  struct Oddity {
     std::string name;
     Where where;
     std::string message;
     std::uint64_t n;
   };
-  std::vector<Kind> kinds_;
+  std::vector<Oddity> kinds_;
   std::uint64_t n_ = 0;
 };
 

@@ -198,21 +198,6 @@ std::string names_in_words(const Log& log, const std::vector<std::size_t>& senso
   return joined(names, ", ");
 }
 
-}  // namespace
-
-std::string form_in_words(const Log& log) {
-  const double interval_s = static_cast<double>(log.interval_us) / 1e6;
-  const std::string form = log.map.form == LogMap::Form::events      ? "events"
-                           : log.map.form == LogMap::Form::intervals ? "intervals"
-                           : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
-                                                : "rows of changes";
-  const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
-  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
-         people_in_words(log);
-}
-
-namespace {
-
 /// "readings every 30 s, 2 sensors, people: Room_Occupancy_Count, up to 3; 2017-12-22T10:49:11 to ..., 10129 rows"
 std::string log_in_words(const Log& log) {
   return form_in_words(log) + "; " + moment_in_words(log, log.begin_us) + " to " + moment_in_words(log, log.end_us) +
@@ -386,6 +371,17 @@ ReportSection days(const Log& log) {
 }
 
 }  // namespace
+
+std::string form_in_words(const Log& log) {
+  const double interval_s = static_cast<double>(log.interval_us) / 1e6;
+  const std::string form = log.map.form == LogMap::Form::events      ? "events"
+                           : log.map.form == LogMap::Form::intervals ? "intervals"
+                           : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
+                                                : "rows of changes";
+  const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
+  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
+         people_in_words(log);
+}
 
 std::string to_text(const Log& log, const LogFacts& facts) {
   constexpr std::size_t most_pairs = 5, most_gaps = 5;

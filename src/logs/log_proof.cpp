@@ -58,9 +58,9 @@ std::int64_t usual_step(const std::vector<std::int64_t>& apart, std::int64_t med
 }
 
 /// How rows follow each other.
-class Steps {
+class RowSteps {
  public:
-  explicit Steps(std::span<const StateRow> rows) {
+  explicit RowSteps(std::span<const StateRow> rows) {
     bool are_seconds = true, are_minutes = true;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       are_seconds = are_seconds && rows[i].us % us_per_s == 0;
@@ -117,11 +117,11 @@ class Steps {
 /// row.
 enum class Beat { none, perhaps, sure };
 Beat beat_of(std::span<const StateRow> rows) {
-  struct Row {
+  struct SeenRow {
     bool is_changed;
     std::int64_t after_any, after_beat;
   };
-  std::vector<Row> found;
+  std::vector<SeenRow> found;
   std::size_t n_changed = 0;
   std::int64_t beat_us = rows.front().us;
   bool are_seconds = true;
@@ -134,16 +134,16 @@ Beat beat_of(std::span<const StateRow> rows) {
   }
   constexpr std::size_t fewest = 4;
   if (n_changed == 0 || found.size() - n_changed < fewest) return Beat::none;
-  for (const auto after : {&Row::after_any, &Row::after_beat}) {
+  for (const auto after : {&SeenRow::after_any, &SeenRow::after_beat}) {
     std::vector<std::int64_t> steps;
-    for (const Row& row : found) {
+    for (const SeenRow& row : found) {
       if (!row.is_changed) steps.push_back(row.*after);
     }
     const std::int64_t step = quantile(steps, 0.5);
     if (step <= 0) continue;
     const std::int64_t tolerance = std::max(step / 10, are_seconds && step >= 5 * us_per_s ? us_per_s : 0);
     std::size_t n_on = 0, n_between = 0;
-    for (const Row& row : found) {
+    for (const SeenRow& row : found) {
       const std::int64_t rest = row.*after % step;
       const bool is_on = row.*after + tolerance >= step && std::min(rest, step - rest) <= tolerance;
       n_on += is_on && !row.is_changed ? 1 : 0;
@@ -205,7 +205,7 @@ bool EventTracks::add(Track& track, std::int64_t us, std::int32_t value) {
 
 void EventTracks::note(Track& track, std::int64_t us) {
   if (track.parts.empty() || track.parts.back().file != file_) track.parts.push_back({file_, us, us});
-  Track::Part& part = track.parts.back();
+  Track::FilePart& part = track.parts.back();
   part.first_us = std::min(part.first_us, us);
   part.last_us = std::max(part.last_us, us);
 }
@@ -258,7 +258,7 @@ std::string with_maps(const std::string& why, const std::vector<std::string>& ke
 
 RowsProof proof_of_rows(std::span<const StateRow> rows) {
   RowsProof proof;
-  const Steps steps(rows);
+  const RowSteps steps(rows);
   if (steps.empty()) return proof;
   proof.usual = steps.cadence();
   proof.are_in_step = steps.usual() >= most;

@@ -58,11 +58,11 @@ class EventTracks {
     bool is_sorted = true;
     Where odd_at{};  ///< the first text that is no state, of a sensor that had some
     std::string odd_text{};
-    struct Part {
+    struct FilePart {
       std::size_t file;
       std::int64_t first_us, last_us;
     };
-    std::vector<Part> parts{};  ///< of each file that tells of it
+    std::vector<FilePart> parts{};  ///< of each file that tells of it
   };
   void begin_file() noexcept { ++file_; }
   /// Finds or makes it; none if there are too many.

@@ -233,7 +233,7 @@ void require_sensors(const Log& log, const LogMap::Seconds& seconds, const std::
 
 /// What two files tell of one sensor at the same time may be two sensors'.
 void require_parts(EventTracks::Track& track, const std::vector<InputFile>& files) {
-  std::ranges::sort(track.parts, {}, &EventTracks::Track::Part::first_us);
+  std::ranges::sort(track.parts, {}, &EventTracks::Track::FilePart::first_us);
   for (std::size_t i = 1; i < track.parts.size(); ++i) {
     if (track.parts[i - 1].last_us < track.parts[i].first_us) continue;
     const std::size_t later = std::max(track.parts[i - 1].file, track.parts[i].file);

@@ -103,28 +103,6 @@ std::string household_lines(const OrdinaryDays& days) {
   return text.str();
 }
 
-}  // namespace
-
-std::string script_text(const OrdinaryDays& days) {
-  const bool is_home = days.is_home();
-  std::ostringstream text;
-  text << "# Ordinary days. Each replicate is a day, from first_day on"
-       << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
-       << "name: "
-       << (is_home          ? "days at home"
-           : days.staff > 0 ? "office days"
-                            : "meeting days")
-       << '\n'
-       << "seed: 1\n"
-       << "replicates: " << days.days << '\n'
-       << "schedule:\n"
-       << "  first_day: " << days.first_day << '\n'
-       << (is_home ? household_lines(days) : office_lines(days));
-  return text.str();
-}
-
-namespace {
-
 using sim::HomeActivity;
 
 constexpr std::size_t at(HomeActivity activity) { return static_cast<std::size_t>(activity); }
@@ -223,34 +201,6 @@ void warn_of_beds(const sim::CompiledStudy& study, const sim::TrialModel& trial,
   }
 }
 
-}  // namespace
-
-/// What residents do where they are, since the scene has no place for it, and who can't get out of bed. Empty without
-/// a household.
-std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
-  const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
-  const auto home = std::ranges::find_if(study.trials(), has_household);
-  if (home == study.trials().end()) return {};
-  const bool someone_works_there = std::ranges::any_of(home->schedule->household->residents, [](const auto& resident) {
-    return resident.occupation == Occupation::works_at_home;
-  });
-  GroupedWarnings lacking;
-  for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
-    if (activity_of(i) == HomeActivity::work && !someone_works_there) continue;
-    const sim::HomeManner manner = sim::manner_of(activity_of(i));
-    if (sim::has_place_for(study.scene(), activity_of(i))) continue;
-    lacking.add("no place", home->schedule->where, manner.phase,
-                std::string("household: no place for ") + manner.phase + " (`for: [" +
-                    std::string(manner.uses.front()) + "]` in its mark): residents do that where they are");
-  }
-  Diagnostics told;
-  lacking.tell(told);
-  warn_of_beds(study, *home, told);
-  return told.warnings();
-}
-
-namespace {
-
 /// Somebody is in the room from one moment of the day to another.
 struct Visit {
   std::size_t person;
@@ -315,54 +265,7 @@ void print_person(std::ostream& out, const ExpectedPerson& person) {
       << person.mean_present_s / 3600.0 << " h\n";
 }
 
-}  // namespace
-
-ScheduleOutlook outlook(const sim::CompiledStudy& study) {
-  const sim::TrialModel& model = study.trials().front();
-  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
-  ScheduleOutlook result;
-  result.first_day = sim::day_of(study, 0);
-  result.days = std::min(study.n_runs() / n_trials, most_days);
-  std::vector<std::size_t> staff;
-  for (std::size_t i = 0; i < model.people.size(); ++i) {
-    const auto& part = model.people[i].spec.part;
-    if (!part || part->part != SchedulePart::staff) continue;
-    staff.push_back(i);
-    result.staff.push_back({model.people[i].spec.id, part->seat, 0, {}, {}, 0.0, 0.0, 0.0});
-  }
-  double cleaning_s = 0.0;
-  int cleanings = 0;
-  std::set<std::string> seats;
-  for (std::uint32_t run = 0; run < result.days * n_trials; run += n_trials) {
-    const std::int64_t day = sim::day_of(study, run);
-    const sim::DayDraw draw = sim::draw_times(study, run);
-    result.working_days += is_working_day(day) ? 1 : 0;
-    for (std::size_t i = 0; i < staff.size(); ++i) {
-      note_person(result.staff[i], draw.stays[staff[i]]);
-      if (!draw.stays[staff[i]].empty()) seats.insert(result.staff[i].seat);
-    }
-    for (const sim::Meeting& meeting : draw.meetings) {
-      result.meetings.push_back(
-          {day, meeting.begin_s, meeting.end_s, meeting.people.size(), model.schedule->meetings[meeting.room].area});
-    }
-    if (draw.cleaning_s) cleaning_s += *draw.cleaning_s, ++cleanings;
-    note_most(result, draw, day);
-  }
-  for (ExpectedPerson& person : result.staff) {
-    const double n = std::max(1, person.days);
-    person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
-  }
-  if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
-  std::ranges::stable_sort(result.meetings, {},
-                           [](const ExpectedMeeting& meeting) { return std::pair(meeting.day, meeting.begin_s); });
-  for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
-    for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
-  }
-  for (const SeatSpec& seat : study.scene().seats) {
-    if (seats.contains(seat.id)) result.seats.push_back(seat.id);
-  }
-  return result;
-}
+// What `pirsim check` tells, for a reader.
 
 void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::CompiledStudy& study) {
   constexpr std::size_t most_told = 12;
@@ -387,14 +290,6 @@ void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::Compile
   if (outlook.seats.empty()) out << " none";
   out << "\n\n";
 }
-
-}  // namespace pirsim::studies
-
-// What `pirsim check` tells, for a reader.
-
-namespace pirsim {
-namespace studies {
-namespace {
 
 /// "S1 S2", "all 10", or the first of very many.
 std::string named(const std::vector<std::string>& seats, std::size_t n_all) {
@@ -609,7 +504,99 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
 }
 
 }  // namespace
-}  // namespace studies
+
+std::string script_text(const OrdinaryDays& days) {
+  const bool is_home = days.is_home();
+  std::ostringstream text;
+  text << "# Ordinary days. Each replicate is a day, from first_day on"
+       << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
+       << "name: "
+       << (is_home          ? "days at home"
+           : days.staff > 0 ? "office days"
+                            : "meeting days")
+       << '\n'
+       << "seed: 1\n"
+       << "replicates: " << days.days << '\n'
+       << "schedule:\n"
+       << "  first_day: " << days.first_day << '\n'
+       << (is_home ? household_lines(days) : office_lines(days));
+  return text.str();
+}
+
+/// What residents do where they are, since the scene has no place for it, and who can't get out of bed. Empty without
+/// a household.
+std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
+  const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
+  const auto home = std::ranges::find_if(study.trials(), has_household);
+  if (home == study.trials().end()) return {};
+  const bool someone_works_there = std::ranges::any_of(home->schedule->household->residents, [](const auto& resident) {
+    return resident.occupation == Occupation::works_at_home;
+  });
+  GroupedWarnings lacking;
+  for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
+    if (activity_of(i) == HomeActivity::work && !someone_works_there) continue;
+    const sim::HomeManner manner = sim::manner_of(activity_of(i));
+    if (sim::has_place_for(study.scene(), activity_of(i))) continue;
+    lacking.add("no place", home->schedule->where, manner.phase,
+                std::string("household: no place for ") + manner.phase + " (`for: [" +
+                    std::string(manner.uses.front()) + "]` in its mark): residents do that where they are");
+  }
+  Diagnostics told;
+  lacking.tell(told);
+  warn_of_beds(study, *home, told);
+  return told.warnings();
+}
+
+ScheduleOutlook outlook(const sim::CompiledStudy& study) {
+  const sim::TrialModel& model = study.trials().front();
+  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
+  ScheduleOutlook result;
+  result.first_day = sim::day_of(study, 0);
+  result.days = std::min(study.n_runs() / n_trials, most_days);
+  std::vector<std::size_t> staff;
+  for (std::size_t i = 0; i < model.people.size(); ++i) {
+    const auto& part = model.people[i].spec.part;
+    if (!part || part->part != SchedulePart::staff) continue;
+    staff.push_back(i);
+    result.staff.push_back({model.people[i].spec.id, part->seat, 0, {}, {}, 0.0, 0.0, 0.0});
+  }
+  double cleaning_s = 0.0;
+  int cleanings = 0;
+  std::set<std::string> seats;
+  for (std::uint32_t run = 0; run < result.days * n_trials; run += n_trials) {
+    const std::int64_t day = sim::day_of(study, run);
+    const sim::DayDraw draw = sim::draw_times(study, run);
+    result.working_days += is_working_day(day) ? 1 : 0;
+    for (std::size_t i = 0; i < staff.size(); ++i) {
+      note_person(result.staff[i], draw.stays[staff[i]]);
+      if (!draw.stays[staff[i]].empty()) seats.insert(result.staff[i].seat);
+    }
+    for (const sim::Meeting& meeting : draw.meetings) {
+      result.meetings.push_back(
+          {day, meeting.begin_s, meeting.end_s, meeting.people.size(), model.schedule->meetings[meeting.room].area});
+    }
+    if (draw.cleaning_s) cleaning_s += *draw.cleaning_s, ++cleanings;
+    note_most(result, draw, day);
+  }
+  for (ExpectedPerson& person : result.staff) {
+    const double n = std::max(1, person.days);
+    person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
+  }
+  if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
+  std::ranges::stable_sort(result.meetings, {},
+                           [](const ExpectedMeeting& meeting) { return std::pair(meeting.day, meeting.begin_s); });
+  for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
+    for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
+  }
+  for (const SeatSpec& seat : study.scene().seats) {
+    if (seats.contains(seat.id)) result.seats.push_back(seat.id);
+  }
+  return result;
+}
+
+}  // namespace pirsim::studies
+
+namespace pirsim {
 
 CheckReport check_study(const Model& model) {
   CheckReport report;

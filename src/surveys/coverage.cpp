@@ -286,7 +286,7 @@ ScriptSpec as_script(const CoverageSpec& spec) {
 }
 
 /// Sums of the steps between neighbours.
-struct Steps {
+struct NeighbourSteps {
   long long sum = 0;
   std::size_t pairs = 0;
   int greatest = 0;
@@ -298,16 +298,16 @@ struct Steps {
     sum += step;
     ++pairs;
   }
-  void add(const Steps& other) {
+  void add(const NeighbourSteps& other) {
     sum += other.sum;
     pairs += other.pairs;
     greatest = std::max(greatest, other.greatest);
   }
 };
 
-Steps steps_of(const CoverageMap& map, std::size_t sensor) {
+NeighbourSteps steps_of(const CoverageMap& map, std::size_t sensor) {
   const FloorGrid& grid = map.grid;
-  Steps steps;
+  NeighbourSteps steps;
   each_square(grid, [&](std::size_t column, std::size_t row) {
     const int here = map.count(column, row, sensor);
     if (column > 0 && grid.on_floor(column - 1, row)) steps.add(map.count(column - 1, row, sensor), here);
@@ -334,7 +334,7 @@ bool is_seen(const CoverageMap& map, std::size_t column, std::size_t row, const 
   return std::ranges::any_of(by, [&](std::size_t sensor) { return map.count(column, row, sensor) > 0; });
 }
 
-MapFigures figures(const Steps& steps, std::size_t seen, const FloorGrid& grid) {
+MapFigures figures(const NeighbourSteps& steps, std::size_t seen, const FloorGrid& grid) {
   MapFigures result;
   result.pairs = steps.pairs;
   result.greatest_step = steps.greatest;
@@ -494,9 +494,9 @@ CoverageMap run_coverage(const CoverageStudy& study, unsigned threads, const Row
 
 CoverageFigures figures_of(const CoverageMap& map) {
   CoverageFigures result;
-  Steps all;
+  NeighbourSteps all;
   for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
-    const Steps steps = steps_of(map, sensor);
+    const NeighbourSteps steps = steps_of(map, sensor);
     all.add(steps);
     const std::size_t seen = count_squares(
         map.grid, [&](std::size_t column, std::size_t row) { return map.count(column, row, sensor) > 0; });

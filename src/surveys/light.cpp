@@ -24,6 +24,10 @@
 // What is summed up of a light, and figures over days.
 
 namespace pirsim::control {
+namespace {
+
+constexpr std::size_t n_draws = 400, fewest_days = 3;
+constexpr double middle = 0.9;
 
 /// Of one day and delay, in rows.
 struct DelaySums {
@@ -57,52 +61,6 @@ class DrawnDays {
   std::size_t n_days_;
   std::vector<std::uint16_t> times_;
 };
-
-SwitchRule::SwitchRule(const LightSpec& light, double window_s)
-    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)), timer(light.timer) {
-  if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
-  if (!light.manual) return;
-  switch_rows = std::llround(light.manual->switch_s / window_s);
-  grace_rows = std::llround(light.manual->grace_s / window_s);
-}
-
-void LightSwitch::go_on() noexcept {
-  lit_ = was_lit_ = true;
-  since_ = counted_from_ = row_;
-  waits_ = 0;
-}
-
-bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
-  if (!rule.switch_rows) {
-    waits_ = cue.occupied && rule.wave_rows ? waits_ + 1 : 0;
-    return cue.moved || (rule.wave_rows && waits_ > *rule.wave_rows);
-  }
-  if (cue.moved && was_lit_ && row_ - since_ <= rule.grace_rows) return true;
-  waits_ = cue.occupied ? waits_ + 1 : 0;
-  return waits_ > *rule.switch_rows;
-}
-
-void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows) {
-  ++row_;
-  if (cue.is_open && latched_) counted_from_ = row_;
-  latched_ = !cue.is_open && (latched_ || cue.is_behind);
-  if (!lit_) {
-    if (goes_on(rule, cue)) go_on();
-    return;
-  }
-  const bool is_over = row_ - counted_from_ > delay_rows;
-  if (cue.moved && (rule.timer == Timer::restarts || is_over)) counted_from_ = row_;
-  if (latched_ || row_ - counted_from_ <= delay_rows || row_ - since_ < rule.least_on_rows) return;
-  lit_ = false;
-  since_ = row_;
-}
-
-namespace {
-
-constexpr std::size_t n_draws = 400, fewest_days = 3;
-constexpr double middle = 0.9;
-
-}  // namespace
 
 DrawnDays::DrawnDays(std::size_t n_days) : n_days_(n_days) {
   if (n_days < fewest_days) return;
@@ -143,8 +101,6 @@ Figure DrawnDays::rate(const std::vector<double>& events, const std::vector<doub
     figure.over_days = Interval{0.0, -std::log(0.5 - 0.5 * middle) / all};
   return figure;
 }
-
-namespace {
 
 constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
@@ -506,7 +462,175 @@ LightCosts Light::costs(People people) const {
   return costs;
 }
 
+// Which delay to take.
+
+constexpr double days_a_week = 7.0;
+
+/// Below which a Poisson mean lies in 95 of 100 cases, n events seen [WilsonHilferty1931]; within 1 %.
+double most_expected(std::int64_t n) {
+  constexpr double normal_95 = 1.6449;
+  const double k = static_cast<double>(n) + 1.0;
+  return k * std::pow(1.0 - 1.0 / (9.0 * k) + normal_95 / (3.0 * std::sqrt(k)), 3.0);
+}
+
+double a_week(const LightCosts& light, const DelayCosts& at) {
+  return days_a_week * light.a_day(static_cast<double>(at.false_offs));
+}
+/// Days differ, and few events tell little: whichever is wider.
+double at_most_a_week(const LightCosts& light, const DelayCosts& at) {
+  const auto& over_days = at.false_offs_an_hour.over_days;
+  const double by_days = over_days ? over_days->high * light.occupied_h : 0.0;
+  return days_a_week * light.a_day(std::max(by_days, most_expected(at.false_offs)));
+}
+
+std::string minutes(const DelayCosts& at) { return shortest_number(at.delay_min) + " min"; }
+std::string hours(double h) {
+  const double s = std::round(3600.0 * h);
+  return s < 60.0 ? fixed(s, 0) + " s" : h < 0.1 ? fixed(s / 60.0, 1) + " min" : fixed(h, 1) + " h";
+}
+std::string allowed(const LightCosts& light) {
+  const double times = light.at_most_a_week;
+  return "less than " + (times == 1.0 ? "once" : shortest_number(times) + " times") + " a week";
+}
+std::string often(double a_week) {
+  if (a_week == 0.0) return "not once";
+  return a_week < days_a_week ? fixed(a_week, 1) + " times a week" : fixed(a_week / days_a_week, 1) + " times a day";
+}
+
+/// To compare a delay with: the rule's, or else the next shorter one that people know; none for the shortest.
+const DelayCosts* other_than(const LightCosts& light, double delay_min) {
+  constexpr std::array usual{1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0};
+  if (light.rule_delays_min.front() != delay_min) return &light.at(light.rule_delays_min.front());
+  const auto above = std::ranges::lower_bound(usual, delay_min);
+  return above == usual.begin() ? nullptr : &light.at(*(above - 1));
+}
+
+/// From which on all hold.
+template <typename Holds>
+const DelayCosts* first_of_rest(const LightCosts& light, Holds holds) {
+  const DelayCosts* first = nullptr;
+  for (auto at = light.by_delay.rbegin(); at != light.by_delay.rend() && holds(*at); ++at) first = &*at;
+  return first;
+}
+
+std::string empty_light(const LightCosts& light, const DelayCosts& at) {
+  return hours(light.a_day(at.lit_empty_h)) + " of empty light a day";
+}
+
+std::string compared(const LightCosts& light, const DelayCosts& at) {
+  const DelayCosts* other = other_than(light, at.delay_min);
+  if (other == nullptr) return ".";
+  return "; at " + minutes(*other) + " " + often(a_week(light, *other)) + ", and " +
+         hours(light.a_day(other->lit_empty_h)) + ".";
+}
+
+/// What is off can't go off.
+std::string dark_all_the_same(const DelayCosts& at) {
+  constexpr double worth_a_word = 0.05;  // assumed (0.01 to 0.2)
+  if (at.dark_share.value < worth_a_word) return {};
+  return " Somebody is in the dark for " + percent(at.dark_share.value) + " of their time all the same.";
+}
+
+std::string shown(const LightCosts& light, const DelayCosts& at) {
+  return minutes(at) + ": off on somebody " + allowed(light) + ", " + empty_light(light, at) + compared(light, at) +
+         dark_all_the_same(at);
+}
+
+std::string best_guess(const LightCosts& light, const DelayCosts& at) {
+  const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0));
+  const std::string seen =
+      at.false_offs == 0 ? "no false-off" : counted(static_cast<std::size_t>(at.false_offs), "false-off");
+  const double days = std::round(10.0 * light.known_days) / 10.0;
+  const std::string data = days < 1.0    ? hours(24.0 * light.known_days) + " is too little"
+                           : days == 1.0 ? "1 day is too little"
+                                         : shortest_number(days) + " days are too few";
+  return data + " to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
+         " days without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
+         hours(light.occupied_h) + " of occupied time, which shows less than one in " +
+         hours(light.occupied_h / most_expected(at.false_offs)) + " (95 %), and " + empty_light(light, at) +
+         compared(light, at) + dark_all_the_same(at);
+}
+
+std::string no_delay(const LightCosts& light) {
+  const DelayCosts& longest = light.by_delay.back();
+  return "no delay up to " + minutes(longest) + " keeps false-offs to " + allowed(light) + ": at " + minutes(longest) +
+         " it goes off on somebody " + often(a_week(light, longest)) + ", with " + empty_light(light, longest) +
+         compared(light, longest) + dark_all_the_same(longest);
+}
+
+std::string without_people(const LightCosts& light) {
+  const DelayCosts& at = light.at(light.rule_delays_min.front());
+  const auto costs = [&](const DelayCosts& of) {
+    return hours(light.a_day(of.lit_h)) + " lit a day, switched on " + fixed(of.switched_on_a_day, 1) + " times";
+  };
+  const DelayCosts* other = other_than(light, at.delay_min);
+  return "whom it goes off on isn't known; at " + minutes(at) + " " + costs(at) +
+         (other != nullptr ? "; at " + minutes(*other) + " " + costs(*other) : "") + ".";
+}
+
+// Lights of a scene's areas.
+
+RuleSpec rule_of_areas(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
+  RuleSpec rule{name, {}};
+  const Areas areas(scene);
+  if (areas.empty()) rule.lights.emplace_back();
+  for (std::size_t area = 0; area < areas.size(); ++area) {
+    LightSpec light;
+    light.id = light.area = areas.names()[area];
+    for (const std::size_t sensor : areas.sensors_of(area)) light.sensors.push_back(scene.sensors[sensor].id);
+    if (!light.sensors.empty()) {
+      rule.lights.push_back(std::move(light));
+    } else {
+      remarks.push_back({Severity::warning,
+                         {scene.name},
+                         "the area '" + light.id + "' has no sensor that could switch a light: it is left out"});
+    }
+  }
+  if (rule.lights.empty())
+    throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
+  return rule;
+}
+
 }  // namespace
+
+SwitchRule::SwitchRule(const LightSpec& light, double window_s)
+    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)), timer(light.timer) {
+  if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
+  if (!light.manual) return;
+  switch_rows = std::llround(light.manual->switch_s / window_s);
+  grace_rows = std::llround(light.manual->grace_s / window_s);
+}
+
+void LightSwitch::go_on() noexcept {
+  lit_ = was_lit_ = true;
+  since_ = counted_from_ = row_;
+  waits_ = 0;
+}
+
+bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
+  if (!rule.switch_rows) {
+    waits_ = cue.occupied && rule.wave_rows ? waits_ + 1 : 0;
+    return cue.moved || (rule.wave_rows && waits_ > *rule.wave_rows);
+  }
+  if (cue.moved && was_lit_ && row_ - since_ <= rule.grace_rows) return true;
+  waits_ = cue.occupied ? waits_ + 1 : 0;
+  return waits_ > *rule.switch_rows;
+}
+
+void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows) {
+  ++row_;
+  if (cue.is_open && latched_) counted_from_ = row_;
+  latched_ = !cue.is_open && (latched_ || cue.is_behind);
+  if (!lit_) {
+    if (goes_on(rule, cue)) go_on();
+    return;
+  }
+  const bool is_over = row_ - counted_from_ > delay_rows;
+  if (cue.moved && (rule.timer == Timer::restarts || is_over)) counted_from_ = row_;
+  if (latched_ || row_ - counted_from_ <= delay_rows || row_ - since_ < rule.least_on_rows) return;
+  lit_ = false;
+  since_ = row_;
+}
 
 const DelayCosts& LightCosts::at(double delay_min) const {
   const auto found = std::ranges::find(by_delay, delay_min, &DelayCosts::delay_min);
@@ -618,116 +742,6 @@ Costs Control::finish() const {
   return costs;
 }
 
-// Which delay to take.
-
-namespace {
-
-constexpr double days_a_week = 7.0;
-
-/// Below which a Poisson mean lies in 95 of 100 cases, n events seen [WilsonHilferty1931]; within 1 %.
-double most_expected(std::int64_t n) {
-  constexpr double normal_95 = 1.6449;
-  const double k = static_cast<double>(n) + 1.0;
-  return k * std::pow(1.0 - 1.0 / (9.0 * k) + normal_95 / (3.0 * std::sqrt(k)), 3.0);
-}
-
-double a_week(const LightCosts& light, const DelayCosts& at) {
-  return days_a_week * light.a_day(static_cast<double>(at.false_offs));
-}
-/// Days differ, and few events tell little: whichever is wider.
-double at_most_a_week(const LightCosts& light, const DelayCosts& at) {
-  const auto& over_days = at.false_offs_an_hour.over_days;
-  const double by_days = over_days ? over_days->high * light.occupied_h : 0.0;
-  return days_a_week * light.a_day(std::max(by_days, most_expected(at.false_offs)));
-}
-
-std::string minutes(const DelayCosts& at) { return shortest_number(at.delay_min) + " min"; }
-std::string hours(double h) {
-  const double s = std::round(3600.0 * h);
-  return s < 60.0 ? fixed(s, 0) + " s" : h < 0.1 ? fixed(s / 60.0, 1) + " min" : fixed(h, 1) + " h";
-}
-std::string allowed(const LightCosts& light) {
-  const double times = light.at_most_a_week;
-  return "less than " + (times == 1.0 ? "once" : shortest_number(times) + " times") + " a week";
-}
-std::string often(double a_week) {
-  if (a_week == 0.0) return "not once";
-  return a_week < days_a_week ? fixed(a_week, 1) + " times a week" : fixed(a_week / days_a_week, 1) + " times a day";
-}
-
-/// To compare a delay with: the rule's, or else the next shorter one that people know; none for the shortest.
-const DelayCosts* other_than(const LightCosts& light, double delay_min) {
-  constexpr std::array usual{1.0, 5.0, 10.0, 15.0, 20.0, 30.0, 60.0};
-  if (light.rule_delays_min.front() != delay_min) return &light.at(light.rule_delays_min.front());
-  const auto above = std::ranges::lower_bound(usual, delay_min);
-  return above == usual.begin() ? nullptr : &light.at(*(above - 1));
-}
-
-/// From which on all hold.
-template <typename Holds>
-const DelayCosts* first_of_rest(const LightCosts& light, Holds holds) {
-  const DelayCosts* first = nullptr;
-  for (auto at = light.by_delay.rbegin(); at != light.by_delay.rend() && holds(*at); ++at) first = &*at;
-  return first;
-}
-
-std::string empty_light(const LightCosts& light, const DelayCosts& at) {
-  return hours(light.a_day(at.lit_empty_h)) + " of empty light a day";
-}
-
-std::string compared(const LightCosts& light, const DelayCosts& at) {
-  const DelayCosts* other = other_than(light, at.delay_min);
-  if (other == nullptr) return ".";
-  return "; at " + minutes(*other) + " " + often(a_week(light, *other)) + ", and " +
-         hours(light.a_day(other->lit_empty_h)) + ".";
-}
-
-/// What is off can't go off.
-std::string dark_all_the_same(const DelayCosts& at) {
-  constexpr double worth_a_word = 0.05;  // assumed (0.01 to 0.2)
-  if (at.dark_share.value < worth_a_word) return {};
-  return " Somebody is in the dark for " + percent(at.dark_share.value) + " of their time all the same.";
-}
-
-std::string shown(const LightCosts& light, const DelayCosts& at) {
-  return minutes(at) + ": off on somebody " + allowed(light) + ", " + empty_light(light, at) + compared(light, at) +
-         dark_all_the_same(at);
-}
-
-std::string best_guess(const LightCosts& light, const DelayCosts& at) {
-  const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0));
-  const std::string seen =
-      at.false_offs == 0 ? "no false-off" : counted(static_cast<std::size_t>(at.false_offs), "false-off");
-  const double days = std::round(10.0 * light.known_days) / 10.0;
-  const std::string data = days < 1.0    ? hours(24.0 * light.known_days) + " is too little"
-                           : days == 1.0 ? "1 day is too little"
-                                         : shortest_number(days) + " days are too few";
-  return data + " to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
-         " days without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
-         hours(light.occupied_h) + " of occupied time, which shows less than one in " +
-         hours(light.occupied_h / most_expected(at.false_offs)) + " (95 %), and " + empty_light(light, at) +
-         compared(light, at) + dark_all_the_same(at);
-}
-
-std::string no_delay(const LightCosts& light) {
-  const DelayCosts& longest = light.by_delay.back();
-  return "no delay up to " + minutes(longest) + " keeps false-offs to " + allowed(light) + ": at " + minutes(longest) +
-         " it goes off on somebody " + often(a_week(light, longest)) + ", with " + empty_light(light, longest) +
-         compared(light, longest) + dark_all_the_same(longest);
-}
-
-std::string without_people(const LightCosts& light) {
-  const DelayCosts& at = light.at(light.rule_delays_min.front());
-  const auto costs = [&](const DelayCosts& of) {
-    return hours(light.a_day(of.lit_h)) + " lit a day, switched on " + fixed(of.switched_on_a_day, 1) + " times";
-  };
-  const DelayCosts* other = other_than(light, at.delay_min);
-  return "whom it goes off on isn't known; at " + minutes(at) + " " + costs(at) +
-         (other != nullptr ? "; at " + minutes(*other) + " " + costs(*other) : "") + ".";
-}
-
-}  // namespace
-
 Advice advise(const LightCosts& light) {
   using Ground = Advice::Ground;
   const std::string name = light.id + ": ";
@@ -743,33 +757,6 @@ Advice advise(const LightCosts& light) {
     return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at)};
   return {Ground::no_delay, {}, name + no_delay(light)};
 }
-
-// Lights of a scene's areas.
-
-namespace {
-
-RuleSpec rule_of_areas(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
-  RuleSpec rule{name, {}};
-  const Areas areas(scene);
-  if (areas.empty()) rule.lights.emplace_back();
-  for (std::size_t area = 0; area < areas.size(); ++area) {
-    LightSpec light;
-    light.id = light.area = areas.names()[area];
-    for (const std::size_t sensor : areas.sensors_of(area)) light.sensors.push_back(scene.sensors[sensor].id);
-    if (!light.sensors.empty()) {
-      rule.lights.push_back(std::move(light));
-    } else {
-      remarks.push_back({Severity::warning,
-                         {scene.name},
-                         "the area '" + light.id + "' has no sensor that could switch a light: it is left out"});
-    }
-  }
-  if (rule.lights.empty())
-    throw Error(ErrorCode::input, {scene.name}, "no area has a sensor that could switch its light");
-  return rule;
-}
-
-}  // namespace
 
 RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,
                   std::vector<Issue>& remarks) {

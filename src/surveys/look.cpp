@@ -130,7 +130,7 @@ class Peaks {
 /// Of a longer run a page shows a part, unless its user asks for more: it would be large and take long to load.
 constexpr double longest_unasked_s = 1200.0;
 
-struct Stretch {
+struct ShownPart {
   double from_s = 0.0, to_s = 0.0;
   double run_s = 0.0;  ///< of the whole run
 };
@@ -138,7 +138,7 @@ struct Stretch {
 int bits_set(const Sample& row) { return std::accumulate(row.bits.begin(), row.bits.end(), 0); }
 
 /// That in which sensors see motion most often, the earliest of equals.
-Stretch busiest(const std::vector<Sample>& rows, double window_s) {
+ShownPart busiest(const std::vector<Sample>& rows, double window_s) {
   const auto length = std::clamp<std::size_t>(static_cast<std::size_t>(longest_unasked_s / window_s), 1, rows.size());
   int motion = 0, most = -1;
   std::size_t best_end = length;
@@ -170,9 +170,9 @@ std::optional<double> known_end_s(const Model& model, std::uint32_t run) {
   return end_of(window);
 }
 
-Stretch chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock, double end_s,
-                       double window_s) {
-  Stretch stretch{request.from_s.value_or(0.0), end_s};
+ShownPart chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock, double end_s,
+                         double window_s) {
+  ShownPart stretch{request.from_s.value_or(0.0), end_s};
   if (request.to_s) {
     stretch.to_s = std::min(end_s, *request.to_s);
     if (!request.from_s) stretch.from_s = std::max(0.0, stretch.to_s - longest_unasked_s);
@@ -242,7 +242,7 @@ io::PageMap page_map(const SceneSpec& scene, const CoverageSpec& spec) {
   return page;
 }
 
-io::RunPage run_page(const Model& model, const PageRequest& request, const Stretch& stretch) {
+io::RunPage run_page(const Model& model, const PageRequest& request, const ShownPart& stretch) {
   std::vector<std::size_t> all_sensors(model.scene().sensors.size());
   std::iota(all_sensors.begin(), all_sensors.end(), 0);
   Film film =
@@ -291,14 +291,14 @@ std::vector<Sample> rows_of(const Model& model, const PageRequest& request) {
 }
 
 /// A whole run is simulated beforehand only where that tells what to show.
-Stretch find_stretch(const Model& model, const PageRequest& request, double window_s) {
+ShownPart find_stretch(const Model& model, const PageRequest& request, double window_s) {
   const std::optional<double> known_s = known_end_s(model, request.run);
   std::vector<Sample> rows;
   if (!known_s || wants_busiest(request, *known_s)) rows = rows_of(model, request);
   const double end_s = known_s ? *known_s : rows.back().time_s;
-  Stretch stretch = wants_busiest(request, end_s)
-                        ? busiest(rows, window_s)
-                        : chosen_stretch(request, model.compiled().clock_of(request.run), end_s, window_s);
+  ShownPart stretch = wants_busiest(request, end_s)
+                          ? busiest(rows, window_s)
+                          : chosen_stretch(request, model.compiled().clock_of(request.run), end_s, window_s);
   stretch.run_s = end_s;
   return stretch;
 }
@@ -417,7 +417,7 @@ Page page_of(const Model& model, const PageRequest& request) {
   require_run(model, request.run);
   require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
-  const Stretch stretch = find_stretch(model, request, window_s);
+  const ShownPart stretch = find_stretch(model, request, window_s);
   io::RunPage page = run_page(model, request, stretch);
   page.run_s = stretch.run_s;
   page.window_s = window_s;

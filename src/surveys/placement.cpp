@@ -87,86 +87,6 @@ PlacementLight told(const LightSums& sums, double window_s) {
   return light;
 }
 
-}  // namespace
-
-LightRows light_rows(const SceneSpec& scene, const PlacementLightSpec& light, const SensingSpec& sensing,
-                     unsigned threads, const RunsDone& done) {
-  ScriptSpec script = light.people;
-  if (sensing.response) script.sensing.response = sensing.response;
-  const Model model = compile(scene, std::move(script));
-  const Areas areas(scene);
-  LightRows rows;
-  rows.window_s = static_cast<double>(model.script().sensing.ticks_per_window) / model.script().sensing.tick_rate_hz;
-  rows.areas = areas.empty() ? std::vector<std::string>{""} : areas.names();
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    rows.sensors.push_back(scene.sensors[i].id);
-    rows.area_of.push_back(areas.empty() ? std::optional<std::size_t>(0) : areas.of_sensors()[i]);
-  }
-  std::size_t n_done = 0;
-  run_study(model, {.threads = threads}, [&](const RunResult& result) {
-    if (result.fault) {
-      rows.warnings.push_back({Severity::warning,
-                               {scene.name},
-                               "the light's people: run " + std::to_string(result.replicate) + " of trial '" +
-                                   result.trial + "' can't go on, and is left out: " + result.fault->message});
-    } else {
-      rows.runs.push_back(run_of(result, rows.areas.size(), rows.sensors.size()));
-    }
-    done(++n_done, model.n_runs());
-  });
-  return rows;
-}
-
-LightSums& LightSums::operator+=(const LightSums& other) noexcept {
-  occupied += other.occupied;
-  false_offs += other.false_offs;
-  dark += other.dark;
-  lit_empty += other.lit_empty;
-  return *this;
-}
-
-bool LightSums::better_than(const LightSums& other) const noexcept {
-  return std::tie(false_offs, dark, lit_empty) < std::tie(other.false_offs, other.dark, other.lit_empty);
-}
-
-LightSums switch_light(const LightRows& rows, std::size_t area, std::span<const std::size_t> sensors,
-                       const PlacementLightSpec& light) {
-  const control::SwitchRule rule = rule_of(light, rows.window_s);
-  const std::int64_t delay_rows = std::llround(60.0 * light.delay_min / rows.window_s);
-  LightSums sums;
-  RowBits moved;
-  for (const LightRun& run : rows.runs) {
-    moved.assign(run.occupied[area].size(), 0);
-    for (const std::size_t sensor : sensors) {
-      for (std::size_t word = 0; word < moved.size(); ++word) moved[word] |= run.moved[sensor][word];
-    }
-    switch_run(run.occupied[area], moved, run.n_rows, rule, delay_rows, sums);
-  }
-  return sums;
-}
-
-LightScore score_light(const LightRows& rows, const PlacementLightSpec& light) {
-  LightScore score;
-  LightSums all;
-  for (std::size_t area = 0; area < rows.areas.size(); ++area) {
-    std::vector<std::size_t> sensors;
-    for (std::size_t i = 0; i < rows.sensors.size(); ++i) {
-      if (rows.area_of[i] == area) sensors.push_back(i);
-    }
-    const LightSums sums = switch_light(rows, area, sensors, light);
-    all += sums;
-    PlacementLight of_area = told(sums, rows.window_s);
-    of_area.area = rows.areas[area];
-    for (const std::size_t sensor : sensors) of_area.sensors.push_back(rows.sensors[sensor]);
-    if (sums.occupied > 0 || !sensors.empty()) score.areas.push_back(std::move(of_area));
-  }
-  score.all = told(all, rows.window_s);
-  score.all.sensors = rows.sensors;
-  return score;
-}
-
-namespace {
-
 /// Share of the squares with motion in which two sensors or more see it.
 double overlap_of(const CoverageMap& map) {
   std::size_t seen = 0, shared = 0;
@@ -193,185 +113,6 @@ std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::
   return idle;
 }
 
-}  // namespace
-
-SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set) {
-  if (!set.sensors.empty()) scene.sensors = set.sensors;
-  return scene;
-}
-
-CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set) {
-  return {with_set(scene, set), coverage};
-}
-
-std::vector<std::vector<MotionCount>> counts_at_seats(const CoverageStudy& study) {
-  std::vector<std::vector<MotionCount>> counts;
-  for (const SeatSpec& seat : study.scene().seats)
-    counts.push_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
-  return counts;
-}
-
-std::vector<std::string> seats_without_target(const SceneSpec& scene,
-                                              const std::vector<std::vector<MotionCount>>& counts) {
-  std::vector<std::string> seats;
-  for (std::size_t i = 0; i < scene.seats.size(); ++i) {
-    if (std::ranges::all_of(counts[i], [](MotionCount n) { return n == 0; })) seats.push_back(scene.seats[i].id);
-  }
-  return seats;
-}
-
-PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
-  const CoverageStudy study = study_of(scene, coverage, set);
-  const CoverageMap map = run_coverage(study, threads);
-  const MapFigures figures = figures_of(map).all;
-  PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}, {}, {}};
-  const auto at_seats = counts_at_seats(study);
-  result.blind_seats = seats_without_target(scene, at_seats);
-  result.idle = idle_of(map, at_seats);
-  return result;
-}
-
-WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads) {
-  const SurveyBase& survey = study.survey();
-  return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer, survey.seed()},
-                       usual_worker(), threads, tried);
-}
-
-SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
-                          unsigned threads) {
-  const SeatsTried tried = spec.by == PlacementAim::seats ? SeatsTried::all : SeatsTried::some;
-  return watch_workers(study_of(scene, spec.coverage, set), tried, threads).by_any();
-}
-
-std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor) {
-  GroupedWarnings blind;
-  for (const PlacementScore& score : scores) {
-    for (const std::size_t i : score.idle) {
-      if (i >= score.set.sensors.size()) continue;  // of the scene, which `check` judges
-      const SensorSpec& sensor = score.set.sensors[i];
-      const std::string outside = hangs_outside(floor, sensor.world_from_sensor.origin);
-      const std::string name = "set '" + score.set.id + "': sensor '" + sensor.id + "'";
-      blind.add(outside.empty() ? "astray" : "outside", i < score.set.where.size() ? score.set.where[i] : Where{}, name,
-                name + " sees the target nowhere" + (outside.empty() ? " (does it look at a wall?)" : ": " + outside));
-    }
-  }
-  Diagnostics remarks;
-  blind.tell(remarks);
-  return remarks.issues();
-}
-
-std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, PlacementAim by) {
-  std::ranges::stable_sort(scores, [by](const PlacementScore& a, const PlacementScore& b) {
-    if (by == PlacementAim::false_off) {
-      const auto cost = [](const PlacementLight& light) {
-        return std::tie(light.false_offs, light.dark_h, light.lit_empty_h);
-      };
-      if (cost(a.light) != cost(b.light)) return cost(a.light) < cost(b.light);
-    }
-    const SeatsAtWork &at_a = a.at_work, &at_b = b.at_work;
-    if (by == PlacementAim::seats) {
-      if (at_a.noticed.size() != at_b.noticed.size()) return at_a.noticed.size() > at_b.noticed.size();
-      if (at_a.surely.size() != at_b.surely.size()) return at_a.surely.size() > at_b.surely.size();
-    }
-    if (a.seen_area_m2 != b.seen_area_m2) return a.seen_area_m2 > b.seen_area_m2;
-    return a.blind_seats.size() < b.blind_seats.size();
-  });
-  return scores;
-}
-
-}  // namespace pirsim::studies
-
-namespace pirsim {
-namespace {
-
-/// Models that the study names and the scene doesn't.
-void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOptions& options) {
-  for (const auto& [name, where] : spec.models) {
-    if (!scene.sensor_models.contains(name))
-      scene.sensor_models[name] = io::find_sensor_model(name, options.scene_file, options.scenes, where);
-  }
-}
-
-/// Of the sensors of any set.
-std::vector<Issue> idle_keys(const SceneSpec& scene, const PlacementSpec& spec) {
-  SceneSpec hung;
-  hung.sensors = scene.sensors;
-  for (const SensorSetSpec& set : spec.sets) {
-    hung.sensors.insert(hung.sensors.end(), set.sensors.begin(), set.sensors.end());
-  }
-  hung.sensor_models = scene.sensor_models;
-  hung.files = scene.files;
-  return idle_sensor_keys(hung, spec.coverage.sensing);
-}
-
-void require_seats(const SceneSpec& scene, const PlacementSpec& spec) {
-  if (!scene.seats.empty()) return;
-  Diagnostics faults;
-  faults.error(spec.by_where, "by: seats: " + scene.name + " has no seat (by: area ranks by the floor that is seen)");
-  faults.throw_if_errors();
-}
-
-/// In a run of the set's own, so that a run of the scene with these sensors gives the same rows.
-void watch_light(const SceneSpec& scene, const PlacementSpec& spec, unsigned threads, PlacementScore& score,
-                 std::vector<Issue>& warnings) {
-  const studies::LightRows rows =
-      studies::light_rows(studies::with_set(scene, score.set), *spec.light, spec.coverage.sensing, threads);
-  studies::LightScore light = studies::score_light(rows, *spec.light);
-  score.light = std::move(light.all);
-  score.areas = std::move(light.areas);
-  if (warnings.empty()) warnings = rows.warnings;  // of people, so the same for every set
-}
-
-/// What sensors notice together may differ from what they notice one by one: effects draw anew for each of a set.
-void keep_the_better(PlacementSearch& search, PlacementAim by) {
-  search.gained = studies::ranked({search.even, search.found}, by).front().set.id == search.found.set.id;
-  if (search.gained) return;
-  const std::string id = search.found.set.id;
-  search.found = search.even;
-  search.found.set.id = id;
-}
-
-}  // namespace
-
-PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
-  if (spec.by == PlacementAim::seats) require_seats(scene, spec);
-  add_models(scene, spec, options);
-  PlacementReport report;
-  const auto set_done = options.set_done ? options.set_done : [] {};
-  const auto watch_people = [&](PlacementScore& score) {
-    score.at_work = studies::seats_at_work(scene, spec, score.set, options.threads);
-    if (spec.light) watch_light(scene, spec, options.threads, score, report.warnings);
-  };
-  for (const SensorSetSpec& set : spec.sets) {
-    report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
-    watch_people(report.ranked.back());
-    set_done();
-  }
-  const std::vector<Issue> blind = studies::warnings(report.ranked, scene.floor);
-  report.warnings.insert(report.warnings.end(), blind.begin(), blind.end());
-  const std::vector<Issue> idle = idle_keys(scene, spec);
-  report.warnings.insert(report.warnings.end(), idle.begin(), idle.end());
-  if (spec.search) {
-    report.search = studies::search_placement(scene, spec, *spec.search, options.threads, set_done);
-    PlacementSearch& search = *report.search;
-    watch_people(search.even);
-    watch_people(search.found);
-    keep_the_better(search, spec.by);
-    report.ranked.push_back(search.even);
-    report.ranked.push_back(search.found);
-  }
-  report.ranked = studies::ranked(std::move(report.ranked), spec.by);
-  report.text =
-      studies::to_text(report.ranked, spec) + (report.search ? studies::to_text(*report.search, spec.by) : "");
-  report.best = report.ranked.empty() ? std::move(scene) : studies::with_set(std::move(scene), report.ranked[0].set);
-  return report;
-}
-
-}  // namespace pirsim
-
-namespace pirsim::studies {
-namespace {
-
 /// (n_things)
 std::vector<bool> covered_by(const Cover& cover, const Chosen& chosen) {
   std::vector<bool> is_covered(cover.worth.size());
@@ -380,61 +121,6 @@ std::vector<bool> covered_by(const Cover& cover, const Chosen& chosen) {
   }
   return is_covered;
 }
-
-}  // namespace
-
-std::uint64_t Cover::worth_of(const Chosen& chosen) const {
-  const std::vector<bool> is_covered = covered_by(*this, chosen);
-  return std::inner_product(is_covered.begin(), is_covered.end(), worth.begin(), std::uint64_t{0});
-}
-
-std::size_t Cover::best_addition(const Chosen& chosen) const {
-  const std::vector<bool> is_covered = covered_by(*this, chosen);
-  std::vector<std::uint64_t> gains;  // 0: is chosen; else by 1 more
-  for (std::size_t candidate = 0; candidate < covered.size(); ++candidate) {
-    const bool is_chosen = std::ranges::find(chosen, candidate) != chosen.end();
-    std::uint64_t& gain = gains.emplace_back(is_chosen ? 0 : 1);
-    for (std::size_t i = 0; i < covered[candidate].size() && !is_chosen; ++i) {
-      const std::uint32_t thing = covered[candidate][i];
-      gain += is_covered[thing] ? 0 : worth[thing];
-    }
-  }
-  return static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
-}
-
-const LightSums& LightSearch::of_area(std::size_t area, const Chosen& chosen) {
-  Chosen own;
-  std::ranges::copy_if(chosen, std::back_inserter(own), [&](std::size_t i) { return rows_.area_of[i] == area; });
-  std::ranges::sort(own);
-  const auto known = known_[area].find(own);
-  if (known != known_[area].end()) return known->second;
-  const LightSums sums = switch_light(rows_, area, own, light_);
-  return known_[area].emplace(std::move(own), sums).first->second;
-}
-
-LightSums LightSearch::of(const Chosen& chosen) {
-  LightSums sums;
-  for (std::size_t area = 0; area < rows_.areas.size(); ++area) sums += of_area(area, chosen);
-  return sums;
-}
-
-std::size_t LightSearch::best_addition(const Chosen& chosen) {
-  std::size_t best = rows_.sensors.size();
-  LightSums least;
-  Chosen with_one = chosen;
-  with_one.push_back(0);
-  for (std::size_t i = 0; i < rows_.sensors.size(); ++i) {
-    if (std::ranges::find(chosen, i) != chosen.end()) continue;
-    with_one.back() = i;
-    const LightSums sums = of(with_one);
-    if (best < rows_.sensors.size() && !sums.better_than(least)) continue;
-    best = i;
-    least = sums;
-  }
-  return best;
-}
-
-namespace {
 
 /// The search as NLopt calls it.
 struct Objective {
@@ -576,6 +262,217 @@ PlacementSearch search_among_places(const SceneSpec& scene, const PlacementSpec&
 
 }  // namespace
 
+LightRows light_rows(const SceneSpec& scene, const PlacementLightSpec& light, const SensingSpec& sensing,
+                     unsigned threads, const RunsDone& done) {
+  ScriptSpec script = light.people;
+  if (sensing.response) script.sensing.response = sensing.response;
+  const Model model = compile(scene, std::move(script));
+  const Areas areas(scene);
+  LightRows rows;
+  rows.window_s = static_cast<double>(model.script().sensing.ticks_per_window) / model.script().sensing.tick_rate_hz;
+  rows.areas = areas.empty() ? std::vector<std::string>{""} : areas.names();
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    rows.sensors.push_back(scene.sensors[i].id);
+    rows.area_of.push_back(areas.empty() ? std::optional<std::size_t>(0) : areas.of_sensors()[i]);
+  }
+  std::size_t n_done = 0;
+  run_study(model, {.threads = threads}, [&](const RunResult& result) {
+    if (result.fault) {
+      rows.warnings.push_back({Severity::warning,
+                               {scene.name},
+                               "the light's people: run " + std::to_string(result.replicate) + " of trial '" +
+                                   result.trial + "' can't go on, and is left out: " + result.fault->message});
+    } else {
+      rows.runs.push_back(run_of(result, rows.areas.size(), rows.sensors.size()));
+    }
+    done(++n_done, model.n_runs());
+  });
+  return rows;
+}
+
+LightSums& LightSums::operator+=(const LightSums& other) noexcept {
+  occupied += other.occupied;
+  false_offs += other.false_offs;
+  dark += other.dark;
+  lit_empty += other.lit_empty;
+  return *this;
+}
+
+bool LightSums::better_than(const LightSums& other) const noexcept {
+  return std::tie(false_offs, dark, lit_empty) < std::tie(other.false_offs, other.dark, other.lit_empty);
+}
+
+LightSums switch_light(const LightRows& rows, std::size_t area, std::span<const std::size_t> sensors,
+                       const PlacementLightSpec& light) {
+  const control::SwitchRule rule = rule_of(light, rows.window_s);
+  const std::int64_t delay_rows = std::llround(60.0 * light.delay_min / rows.window_s);
+  LightSums sums;
+  RowBits moved;
+  for (const LightRun& run : rows.runs) {
+    moved.assign(run.occupied[area].size(), 0);
+    for (const std::size_t sensor : sensors) {
+      for (std::size_t word = 0; word < moved.size(); ++word) moved[word] |= run.moved[sensor][word];
+    }
+    switch_run(run.occupied[area], moved, run.n_rows, rule, delay_rows, sums);
+  }
+  return sums;
+}
+
+LightScore score_light(const LightRows& rows, const PlacementLightSpec& light) {
+  LightScore score;
+  LightSums all;
+  for (std::size_t area = 0; area < rows.areas.size(); ++area) {
+    std::vector<std::size_t> sensors;
+    for (std::size_t i = 0; i < rows.sensors.size(); ++i) {
+      if (rows.area_of[i] == area) sensors.push_back(i);
+    }
+    const LightSums sums = switch_light(rows, area, sensors, light);
+    all += sums;
+    PlacementLight of_area = told(sums, rows.window_s);
+    of_area.area = rows.areas[area];
+    for (const std::size_t sensor : sensors) of_area.sensors.push_back(rows.sensors[sensor]);
+    if (sums.occupied > 0 || !sensors.empty()) score.areas.push_back(std::move(of_area));
+  }
+  score.all = told(all, rows.window_s);
+  score.all.sensors = rows.sensors;
+  return score;
+}
+
+SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set) {
+  if (!set.sensors.empty()) scene.sensors = set.sensors;
+  return scene;
+}
+
+CoverageStudy study_of(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set) {
+  return {with_set(scene, set), coverage};
+}
+
+std::vector<std::vector<MotionCount>> counts_at_seats(const CoverageStudy& study) {
+  std::vector<std::vector<MotionCount>> counts;
+  for (const SeatSpec& seat : study.scene().seats)
+    counts.push_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
+  return counts;
+}
+
+std::vector<std::string> seats_without_target(const SceneSpec& scene,
+                                              const std::vector<std::vector<MotionCount>>& counts) {
+  std::vector<std::string> seats;
+  for (std::size_t i = 0; i < scene.seats.size(); ++i) {
+    if (std::ranges::all_of(counts[i], [](MotionCount n) { return n == 0; })) seats.push_back(scene.seats[i].id);
+  }
+  return seats;
+}
+
+PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
+  const CoverageStudy study = study_of(scene, coverage, set);
+  const CoverageMap map = run_coverage(study, threads);
+  const MapFigures figures = figures_of(map).all;
+  PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}, {}, {}};
+  const auto at_seats = counts_at_seats(study);
+  result.blind_seats = seats_without_target(scene, at_seats);
+  result.idle = idle_of(map, at_seats);
+  return result;
+}
+
+WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads) {
+  const SurveyBase& survey = study.survey();
+  return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer, survey.seed()},
+                       usual_worker(), threads, tried);
+}
+
+SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,
+                          unsigned threads) {
+  const SeatsTried tried = spec.by == PlacementAim::seats ? SeatsTried::all : SeatsTried::some;
+  return watch_workers(study_of(scene, spec.coverage, set), tried, threads).by_any();
+}
+
+std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor) {
+  GroupedWarnings blind;
+  for (const PlacementScore& score : scores) {
+    for (const std::size_t i : score.idle) {
+      if (i >= score.set.sensors.size()) continue;  // of the scene, which `check` judges
+      const SensorSpec& sensor = score.set.sensors[i];
+      const std::string outside = hangs_outside(floor, sensor.world_from_sensor.origin);
+      const std::string name = "set '" + score.set.id + "': sensor '" + sensor.id + "'";
+      blind.add(outside.empty() ? "astray" : "outside", i < score.set.where.size() ? score.set.where[i] : Where{}, name,
+                name + " sees the target nowhere" + (outside.empty() ? " (does it look at a wall?)" : ": " + outside));
+    }
+  }
+  Diagnostics remarks;
+  blind.tell(remarks);
+  return remarks.issues();
+}
+
+std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, PlacementAim by) {
+  std::ranges::stable_sort(scores, [by](const PlacementScore& a, const PlacementScore& b) {
+    if (by == PlacementAim::false_off) {
+      const auto cost = [](const PlacementLight& light) {
+        return std::tie(light.false_offs, light.dark_h, light.lit_empty_h);
+      };
+      if (cost(a.light) != cost(b.light)) return cost(a.light) < cost(b.light);
+    }
+    const SeatsAtWork &at_a = a.at_work, &at_b = b.at_work;
+    if (by == PlacementAim::seats) {
+      if (at_a.noticed.size() != at_b.noticed.size()) return at_a.noticed.size() > at_b.noticed.size();
+      if (at_a.surely.size() != at_b.surely.size()) return at_a.surely.size() > at_b.surely.size();
+    }
+    if (a.seen_area_m2 != b.seen_area_m2) return a.seen_area_m2 > b.seen_area_m2;
+    return a.blind_seats.size() < b.blind_seats.size();
+  });
+  return scores;
+}
+
+std::uint64_t Cover::worth_of(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  return std::inner_product(is_covered.begin(), is_covered.end(), worth.begin(), std::uint64_t{0});
+}
+
+std::size_t Cover::best_addition(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  std::vector<std::uint64_t> gains;  // 0: is chosen; else by 1 more
+  for (std::size_t candidate = 0; candidate < covered.size(); ++candidate) {
+    const bool is_chosen = std::ranges::find(chosen, candidate) != chosen.end();
+    std::uint64_t& gain = gains.emplace_back(is_chosen ? 0 : 1);
+    for (std::size_t i = 0; i < covered[candidate].size() && !is_chosen; ++i) {
+      const std::uint32_t thing = covered[candidate][i];
+      gain += is_covered[thing] ? 0 : worth[thing];
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
+}
+
+const LightSums& LightSearch::of_area(std::size_t area, const Chosen& chosen) {
+  Chosen own;
+  std::ranges::copy_if(chosen, std::back_inserter(own), [&](std::size_t i) { return rows_.area_of[i] == area; });
+  std::ranges::sort(own);
+  const auto known = known_[area].find(own);
+  if (known != known_[area].end()) return known->second;
+  const LightSums sums = switch_light(rows_, area, own, light_);
+  return known_[area].emplace(std::move(own), sums).first->second;
+}
+
+LightSums LightSearch::of(const Chosen& chosen) {
+  LightSums sums;
+  for (std::size_t area = 0; area < rows_.areas.size(); ++area) sums += of_area(area, chosen);
+  return sums;
+}
+
+std::size_t LightSearch::best_addition(const Chosen& chosen) {
+  std::size_t best = rows_.sensors.size();
+  LightSums least;
+  Chosen with_one = chosen;
+  with_one.push_back(0);
+  for (std::size_t i = 0; i < rows_.sensors.size(); ++i) {
+    if (std::ranges::find(chosen, i) != chosen.end()) continue;
+    with_one.back() = i;
+    const LightSums sums = of(with_one);
+    if (best < rows_.sensors.size() && !sums.better_than(least)) continue;
+    best = i;
+    least = sums;
+  }
+  return best;
+}
+
 SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
   double total = 0.0;
   for (const MountingLineSpec& line : search.lines) total += glm::distance(line.from, line.to);
@@ -620,3 +517,91 @@ PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& sp
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+namespace {
+
+/// Models that the study names and the scene doesn't.
+void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOptions& options) {
+  for (const auto& [name, where] : spec.models) {
+    if (!scene.sensor_models.contains(name))
+      scene.sensor_models[name] = io::find_sensor_model(name, options.scene_file, options.scenes, where);
+  }
+}
+
+/// Of the sensors of any set.
+std::vector<Issue> idle_keys(const SceneSpec& scene, const PlacementSpec& spec) {
+  SceneSpec hung;
+  hung.sensors = scene.sensors;
+  for (const SensorSetSpec& set : spec.sets) {
+    hung.sensors.insert(hung.sensors.end(), set.sensors.begin(), set.sensors.end());
+  }
+  hung.sensor_models = scene.sensor_models;
+  hung.files = scene.files;
+  return idle_sensor_keys(hung, spec.coverage.sensing);
+}
+
+void require_seats(const SceneSpec& scene, const PlacementSpec& spec) {
+  if (!scene.seats.empty()) return;
+  Diagnostics faults;
+  faults.error(spec.by_where, "by: seats: " + scene.name + " has no seat (by: area ranks by the floor that is seen)");
+  faults.throw_if_errors();
+}
+
+/// In a run of the set's own, so that a run of the scene with these sensors gives the same rows.
+void watch_light(const SceneSpec& scene, const PlacementSpec& spec, unsigned threads, PlacementScore& score,
+                 std::vector<Issue>& warnings) {
+  const studies::LightRows rows =
+      studies::light_rows(studies::with_set(scene, score.set), *spec.light, spec.coverage.sensing, threads);
+  studies::LightScore light = studies::score_light(rows, *spec.light);
+  score.light = std::move(light.all);
+  score.areas = std::move(light.areas);
+  if (warnings.empty()) warnings = rows.warnings;  // of people, so the same for every set
+}
+
+/// What sensors notice together may differ from what they notice one by one: effects draw anew for each of a set.
+void keep_the_better(PlacementSearch& search, PlacementAim by) {
+  search.gained = studies::ranked({search.even, search.found}, by).front().set.id == search.found.set.id;
+  if (search.gained) return;
+  const std::string id = search.found.set.id;
+  search.found = search.even;
+  search.found.set.id = id;
+}
+
+}  // namespace
+
+PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
+  if (spec.by == PlacementAim::seats) require_seats(scene, spec);
+  add_models(scene, spec, options);
+  PlacementReport report;
+  const auto set_done = options.set_done ? options.set_done : [] {};
+  const auto watch_people = [&](PlacementScore& score) {
+    score.at_work = studies::seats_at_work(scene, spec, score.set, options.threads);
+    if (spec.light) watch_light(scene, spec, options.threads, score, report.warnings);
+  };
+  for (const SensorSetSpec& set : spec.sets) {
+    report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
+    watch_people(report.ranked.back());
+    set_done();
+  }
+  const std::vector<Issue> blind = studies::warnings(report.ranked, scene.floor);
+  report.warnings.insert(report.warnings.end(), blind.begin(), blind.end());
+  const std::vector<Issue> idle = idle_keys(scene, spec);
+  report.warnings.insert(report.warnings.end(), idle.begin(), idle.end());
+  if (spec.search) {
+    report.search = studies::search_placement(scene, spec, *spec.search, options.threads, set_done);
+    PlacementSearch& search = *report.search;
+    watch_people(search.even);
+    watch_people(search.found);
+    keep_the_better(search, spec.by);
+    report.ranked.push_back(search.even);
+    report.ranked.push_back(search.found);
+  }
+  report.ranked = studies::ranked(std::move(report.ranked), spec.by);
+  report.text =
+      studies::to_text(report.ranked, spec) + (report.search ? studies::to_text(*report.search, spec.by) : "");
+  report.best = report.ranked.empty() ? std::move(scene) : studies::with_set(std::move(scene), report.ranked[0].set);
+  return report;
+}
+
+}  // namespace pirsim

@@ -36,9 +36,10 @@ constexpr std::size_t most_seats = 30, most_pairs = 600;  // of seats and sensor
 constexpr std::size_t most_remembered = 1024;             // the metronome's work has some 600 postures
 
 /// The worker's body, tick by tick, as in a run.
-class Body {
+class SittingBody {
  public:
-  Body(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid, const body::SeatPlace& place)
+  SittingBody(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid,
+              const body::SeatPlace& place)
       : work_(worker.work),
         activity_(facts_of(worker.work).activity),
         motion_(seated(humanoid, place, room.array.tick_s())),
@@ -72,9 +73,9 @@ class Body {
 };
 
 /// What the optics show of one body's postures, with those that it was in before.
-class View {
+class PostureView {
  public:
-  View(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid)
+  PostureView(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid)
       : room_(room),
         humanoid_(humanoid),
         radiance_(sim::radiance_of(worker.person.warmth, room.sensing.ambient_c)),
@@ -106,9 +107,9 @@ class View {
 };
 
 /// Channels that saw the body at some tick, and at every tick.
-class Coverage {
+class SeenChannels {
  public:
-  explicit Coverage(const ZoneSet& channels) : ever_(channels), always_(channels) {}
+  explicit SeenChannels(const ZoneSet& channels) : ever_(channels), always_(channels) {}
 
   void add(const ZoneSet& channels) noexcept {
     ever_.add(channels.words());
@@ -140,13 +141,13 @@ std::pair<std::size_t, std::size_t> channels_of(const WatchedRoom& room, std::si
 /// (n_sensors)
 std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int work_s, const body::Humanoid& humanoid,
                               const body::SeatPlace& place) {
-  Body body(room, worker, humanoid, place);
+  SittingBody body(room, worker, humanoid, place);
   const int rate = room.sensing.tick_rate_hz;
   for (int tick = 0; tick < reach_s * rate; ++tick) body.advance();
-  View view(room, worker, humanoid);
+  PostureView view(room, worker, humanoid);
   body::Outline outline = body.outline();
   sim::Exposure before = view.of(outline), after = before;
-  Coverage coverage(before.channels);
+  SeenChannels coverage(before.channels);
   sim::Detector detector(room.array);
   detector.begin_run(room.seed, 0, before);
   std::vector<std::uint8_t> triggers(room.array.n_sensors()), noticed(room.array.n_sensors());
