@@ -166,8 +166,8 @@ class LightCosts:
 
     lights: tuple[str, ...]
     columns: dict[str, npt.NDArray[Any]]
-    """[light and delay] `light`, `delay_min`, `false_offs_an_hour`, `dark_share`, `lit_h` and so on, as `pirsim control -o`
-    writes them; NaN where nothing is known."""
+    """[light and delay] `light`, `delay_min`, `false_offs_an_hour`, `dark_share`, `lit_h` and so on, those of `pirsim
+    control -o`, unrounded; NaN where nothing is known."""
     lit: npt.NDArray[np.uint8]
     """[run, second, light] 1 where it is lit, by the light's first delay; 0 behind the end of a run."""
 
@@ -212,7 +212,7 @@ def control(result: Result, rule: PathOr | Mapping[str, Any] | None = None, *,
     else:
         file, text = as_path(rule), ""
     run, second = np.nonzero(result.valid)
-    rows = {
+    rows: dict[str, Any] = {
         "sensors": list(result.sensors), "areas": list(result.areas), "doors": list(result.doors),
         "window_s": float(result.time[0]) if len(result.time) else 1.0,
         "clock": [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist(),

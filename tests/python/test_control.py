@@ -73,5 +73,5 @@ def test_a_rule_that_does_not_fit_is_an_input_error(result, tmp_path):
         pirsim.control(result, {"lights": [{"delay": 5}]})
     with pytest.raises(pirsim.FileError):
         pirsim.control(result, tmp_path / "nowhere.yaml")
-    with pytest.raises(KeyError, match="no light 'light_1' with a delay of 7.5 min"):
+    with pytest.raises(KeyError, match="no light 'light' with a delay of 7.5 min"):
         pirsim.control(result).at(7.5)
