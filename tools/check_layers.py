@@ -36,9 +36,9 @@ PUBLIC = {
     "survey": "model/schema", "sample": "model/schema", "columns": "model/schema", "response": "model/schema",
     "effects": "engine/effects",
     "model": "engine/sim", "state": "engine/sim", "study": "engine/sim", "recording": "engine/sim",
-    "coverage": "surveys", "look": "surveys", "walk_test": "surveys",
+    "coverage": "surveys", "look": "surveys",
     "room": "rooms", "flat": "rooms", "dataset": "rooms",
-    "csv": "files", "io": "files", "log": "logs", "log_facts": "logs",
+    "csv": "files", "io": "files", "log": "logs",
     "control": "surveys", "counting": "logs", "calibrate": "logs",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }

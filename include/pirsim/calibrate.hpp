@@ -15,7 +15,6 @@
 #include "pirsim/dataset.hpp"
 #include "pirsim/interval.hpp"
 #include "pirsim/log.hpp"
-#include "pirsim/log_facts.hpp"
 
 namespace pirsim::calibrate {
 
@@ -59,6 +58,7 @@ enum class Verdict {
   none_like_it,    ///< no room of this recipe makes such a log: neither counts nor errors can be relied on
   too_little_told  ///< too little happens in the log to tell
 };
+[[nodiscard]] std::string word_of(Verdict verdict);  ///< "like-these"
 
 struct Calibration {
   counting::Counter counter;  ///< of all rooms, weighed, with the error to expect
@@ -71,8 +71,6 @@ struct Calibration {
   double mean_error = 0.0;   ///< to expect; its interval is the counter's
   double error_alike = 0.0;  ///< the same if all rooms weighed alike
 };
-
-inline constexpr int fewest_rooms = 10;  ///< that can be weighed
 
 /// At this p or below no room makes such a log.
 inline constexpr double verdict_level = 0.05;
@@ -112,8 +110,9 @@ class Pool {
 [[nodiscard]] std::vector<PoolRoom> read_pool(const std::filesystem::path& folder, int n_sensors, double step_s,
                                               unsigned threads = 0);
 
-/// Whether rooms of a recipe may have so many sensors; of the user's own scenes nobody knows before they are read.
-[[nodiscard]] bool may_have(const dataset::RecipeSpec& recipe, int n_sensors);
+/// Before hours of work on rooms that can't be weighed: throws Error(input) for a recipe of fewer than ten, and for one
+/// whose rooms can't have so many sensors.
+void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors);
 
 /// Hours of the day that a recipe simulates.
 [[nodiscard]] Interval hours_of(const dataset::RecipeSpec& recipe);
@@ -127,6 +126,28 @@ struct LogDays {
 [[nodiscard]] LogDays days_of(const LogRows& rows, const Interval& hours);
 /// All of it, as one.
 [[nodiscard]] counting::Stretch whole_log(const LogRows& rows);
+
+/// What a counter remembers of the log that it comes from, and expects of those that it counts.
+struct LogTraits {
+  double interval_s = 0.0;                       ///< between readings; 0: events, or not told
+  std::vector<std::string> sensors{};            ///< empty: not told
+  std::vector<std::optional<double>> holds_s{};  ///< (sensors) none: the log doesn't tell; empty: of no sensor
+};
+[[nodiscard]] LogTraits traits_of(const LogFacts& facts);
+void remember(const LogTraits& log, counting::Counter& counter);
+
+/// A log as rooms are weighed by it.
+struct WeighingLog {
+  LogRows rows;  ///< readings, as the rooms have them
+  LogTraits traits{};
+  std::optional<double> hold_s{};  ///< for which the rooms' sensors hold motion; none: as the recipe says
+};
+/// step_s: of a reading; none: usual_window_s(). hold_s: of all sensors; none: as common_hold(). Throws as
+/// common_hold(), and Error(usage) for a step shorter than the log's own.
+[[nodiscard]] WeighingLog weighing_log(const Log& log, std::optional<double> step_s, std::optional<double> hold_s);
+/// Weighs the rooms of a finished dataset. days: of the log, by the recipe's hours. The counter remembers the log.
+[[nodiscard]] Calibration weigh_rooms(const std::filesystem::path& folder, const WeighingLog& log, const LogDays& days,
+                                      const counting::Settings& settings = {}, unsigned threads = 0);
 
 // What is written.
 
@@ -153,15 +174,6 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
 [[nodiscard]] std::string finding(const Calibration& calibration);
 
 // A log counted.
-
-/// What a counter remembers of the log that it comes from, and expects of those that it counts.
-struct LogTraits {
-  double interval_s = 0.0;                       ///< between readings; 0: events, or not told
-  std::vector<std::string> sensors{};            ///< empty: not told
-  std::vector<std::optional<double>> holds_s{};  ///< (sensors) none: the log doesn't tell; empty: of no sensor
-};
-[[nodiscard]] LogTraits traits_of(const LogFacts& facts);
-void remember(const LogTraits& log, counting::Counter& counter);
 
 struct LogCounts {
   LogRows rows;  ///< windows of the counter's step

@@ -17,8 +17,9 @@
 #include "pirsim/sample.hpp"
 
 namespace pirsim {
+class Model;
 struct SceneSpec;
-}
+}  // namespace pirsim
 
 namespace pirsim::control {
 
@@ -81,11 +82,14 @@ struct RuleSpec {
 [[nodiscard]] RuleSpec read_rule(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 [[nodiscard]] RuleSpec parse_rule(std::string_view text, const std::string& name);
 
-/// A light for each area of the scene, switched by the sensors that watch it; one for all without areas. Areas without
-/// sensors are remarks. Throws Error(input) if no area has one.
-[[nodiscard]] RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks);
-/// Gives each light of an area that names no sensors those that watch it. Throws as rule_of().
-void name_sensors(RuleSpec& rule, const SceneSpec& scene);
+/// The rule that is given, whose lights of areas that name no sensors get those that watch them in the scene. Without
+/// one a light for each area of the scene, one for all without areas, called by this name; areas without sensors are
+/// remarks. Without a scene, too, one by any sensor. Throws Error(input) if no area of the scene has a sensor.
+[[nodiscard]] RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,
+                                std::vector<Issue>& remarks);
+/// A remark for each light in whose area somebody at work is noticed in none of some seats by its sensors: who is alone
+/// there sits in the dark at any delay. model: what made the rows.
+[[nodiscard]] std::vector<Issue> deaf_seats(const RuleSpec& rule, const Model& model);
 
 // What it costs.
 
@@ -191,6 +195,8 @@ class Control {
   /// sensors, or not its door (bits of 3), or not its area (people of -2). A new replicate or trial begins in the dark.
   /// day: what intervals are over; a run if it is empty. Throws Error(input) for a clock that tells no time.
   LitRow add(const Sample& row, std::string_view day = {});
+  /// So many of the rows that were added stand for ones that are missing.
+  void note_missing(std::int64_t n_rows) noexcept;
   [[nodiscard]] Costs finish() const;
 
  private:
@@ -198,7 +204,16 @@ class Control {
   std::unique_ptr<State> state_;
 };
 
-/// A row a light and delay; docs/formats/control.md.
+/// A row of the table of costs; docs/formats/control.md.
+struct CostLine {
+  const LightCosts& light;
+  const DelayCosts& at;
+};
 [[nodiscard]] std::string to_csv(const Costs& costs);
 
 }  // namespace pirsim::control
+
+namespace pirsim {
+template <>
+[[nodiscard]] std::span<const Column<control::CostLine>> columns_of();
+}

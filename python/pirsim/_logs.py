@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 from dataclasses import dataclass, field
@@ -16,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._inputs import PathOr, as_path, warn_of
 from ._result import Result
+from ._study import Model, handle_of
 
 if TYPE_CHECKING:
     import pandas
@@ -167,8 +166,8 @@ class LightCosts:
 
     lights: tuple[str, ...]
     columns: dict[str, npt.NDArray[Any]]
-    """[light and delay] `light`, `delay_min`, `false_offs_an_hour`, `dark_share`, `lit_h` and so on, as `pirsim control -o`
-    writes them; NaN where nothing is known."""
+    """[light and delay] `light`, `delay_min`, `false_offs_an_hour`, `dark_share`, `lit_h` and so on, those of `pirsim
+    control -o`, unrounded; NaN where nothing is known."""
     lit: npt.NDArray[np.uint8]
     """[run, second, light] 1 where it is lit, by the light's first delay; 0 behind the end of a run."""
 
@@ -196,45 +195,36 @@ class LightCosts:
         return pd.DataFrame(self.columns)
 
 
-def control(result: Result, rule: PathOr | Mapping[str, Any] | None = None) -> LightCosts:
-    """Switches light by what sensors reported, and says what each delay costs.
+def control(result: Result, rule: PathOr | Mapping[str, Any] | None = None, *,
+            model: Model | None = None) -> LightCosts:
+    """Switches light by what sensors reported, and says what each delay costs, as `pirsim control` does.
 
     rule: a file, or the same keys as a dict: `{"lights": [{"area": "office", "delay_min": 5}]}`
-    (docs/formats/control.md). None: one light, by any sensor. A run is a day.
+    (docs/formats/control.md). None: one light, by any sensor. model: what made the result, as --scene and --script tell
+    the command: a light of an area that names no sensors is switched by those that watch it, and without a rule each
+    area has a light. A run is a day.
 
-    Raises InputError for a rule that isn't one or doesn't fit the rows, and FileError. What the rows lack for it is an
-    InputWarning.
+    Raises InputError for a rule that isn't one or doesn't fit the rows, and FileError. What the rows lack for it, and
+    seats where nobody at work is noticed, are an InputWarning.
     """
     if rule is None or isinstance(rule, Mapping):
-        keys: dict[str, Any] = {"pirsim_control": 1, "lights": [{}], **(rule or {})}
-        file, text = "", json.dumps(keys)
+        file, text = "", "" if rule is None else json.dumps({"pirsim_control": 1, "lights": [{}], **rule})
     else:
         file, text = as_path(rule), ""
     run, second = np.nonzero(result.valid)
-    window_s = float(result.time[0]) if len(result.time) else 1.0
-    clock = [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist()
-    table, lights, rows, remarks = _core.control_light(
-        file=file,
-        text=text,
-        sensors=list(result.sensors),
-        areas=list(result.areas),
-        doors=list(result.doors),
-        window_s=window_s,
-        run=run.astype(np.int32),
-        time_s=np.ascontiguousarray(result.time[second], dtype=np.float64),
-        clock=clock,
-        people=result.people[run, second].astype(np.int32),
-        people_of_areas=np.ascontiguousarray(result.people_of_areas[run, second], dtype=np.int32),
-        door_open=np.ascontiguousarray(result.door_open[run, second], dtype=np.uint8),
-        bits=np.ascontiguousarray(result.bits[run, second], dtype=np.uint8))
-    warn_of(remarks)
-    lit = np.zeros((*result.valid.shape, len(lights)), dtype=np.uint8)
-    lit[run, second] = rows
-    lit.flags.writeable = False
-    lines = list(csv.DictReader(io.StringIO(table)))
-    columns: dict[str, npt.NDArray[Any]] = {}
-    for column in lines[0]:
-        values = [line[column] for line in lines]
-        columns[column] = np.array(values if column == "light" else [float(value or "nan") for value in values])
-        columns[column].flags.writeable = False
-    return LightCosts(tuple(lights), columns, lit)
+    rows: dict[str, Any] = {
+        "sensors": list(result.sensors), "areas": list(result.areas), "doors": list(result.doors),
+        "window_s": float(result.time[0]) if len(result.time) else 1.0,
+        "clock": [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist(),
+        "run": run.astype(np.int32),
+        "time_s": np.ascontiguousarray(result.time[second], dtype=np.float64)}
+    rows.update((name, np.ascontiguousarray(getattr(result, name)[run, second], dtype=of)) for name, of in (
+        ("people", np.int32), ("people_of_areas", np.int32), ("door_open", np.uint8), ("bits", np.uint8)))
+    found = _core.control_light(file, text, None if model is None else handle_of(model), rows)
+    warn_of(found["remarks"])
+    columns = {name: np.array(cells) for name, cells in found["columns"].items()}
+    lit = np.zeros((*result.valid.shape, len(found["lights"])), dtype=np.uint8)
+    lit[run, second] = found["lit"]
+    for array in (lit, *columns.values()):
+        array.flags.writeable = False
+    return LightCosts(found["lights"], columns, lit)

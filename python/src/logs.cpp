@@ -10,29 +10,17 @@
 #include <pirsim/counting.hpp>
 #include <pirsim/dataset.hpp>
 #include <pirsim/log.hpp>
-#include <pirsim/log_facts.hpp>
+#include <pirsim/model.hpp>
 #include <sstream>
 
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
 
-namespace pirsim {
-
-template <>
-struct Words<calibrate::Verdict> {
-  static constexpr WordList<calibrate::Verdict, 3> all{{{"like-these", calibrate::Verdict::like_these},
-                                                        {"none-like-it", calibrate::Verdict::none_like_it},
-                                                        {"too-little-told", calibrate::Verdict::too_little_told}}};
-};
-
-}  // namespace pirsim
-
 namespace pirsim::python {
 namespace {
 
-using counting::Counter;
-using counting::Settings;
+using counting::Counter, counting::RoomModel, counting::Settings;
 
 template <typename T, int n>
 using Array = nb::ndarray<const T, nb::ndim<n>, nb::c_contig, nb::device::cpu>;
@@ -110,37 +98,22 @@ nb::object pair_of(const std::optional<Interval>& interval) {
 
 // -- counters --------------------------------------------------------------------------------------------------------
 
-/// What `of` appends of each room: (rooms x ...).
-template <typename T, typename Of>
-nb::object of_rooms(const Counter& counter, std::initializer_list<std::size_t> shape, const Of& of) {
-  std::vector<T> all;
-  for (const counting::RoomModel& room : counter.rooms) of(room, all);
-  return to_numpy(std::move(all), shape);
+/// (rooms)
+template <typename Value>
+nb::object of_rooms(const Counter& counter, Value RoomModel::*member) {
+  std::vector<Value> all;
+  for (const RoomModel& room : counter.rooms) all.push_back(room.*member);
+  return to_numpy(std::move(all), {counter.rooms.size()});
 }
 
-nb::object numbers_of(const Counter& counter) {
-  return of_rooms<std::int32_t>(counter, {counter.rooms.size()},
-                                [](const auto& room, auto& all) { all.push_back(room.number); });
-}
-
-nb::object weights_of(const Counter& counter) {
-  return of_rooms<double>(counter, {counter.rooms.size()},
-                          [](const auto& room, auto& all) { all.push_back(room.weight); });
-}
-
-nb::object first_of(const Counter& counter) {
-  const auto n_states = static_cast<std::size_t>(counter.n_states());
-  return of_rooms<double>(counter, {counter.rooms.size(), n_states}, [](const auto& room, auto& all) {
-    all.insert(all.end(), room.first.begin(), room.first.end());
-  });
-}
-
-nb::object emissions_of(const Counter& counter) {
-  const auto n_states = static_cast<std::size_t>(counter.n_states());
-  const auto n_symbols = static_cast<std::size_t>(counter.n_symbols());
-  return of_rooms<double>(counter, {counter.rooms.size(), n_states, n_symbols}, [](const auto& room, auto& all) {
-    all.insert(all.end(), room.emissions.begin(), room.emissions.end());
-  });
+/// (rooms x states) of what has a number a state, else (rooms x states x symbols).
+nb::object tables_of_rooms(const Counter& counter, std::vector<double> RoomModel::*member) {
+  std::vector<double> all;
+  for (const RoomModel& room : counter.rooms) all.insert(all.end(), (room.*member).begin(), (room.*member).end());
+  const std::size_t n_rooms = counter.rooms.size(), n_states = static_cast<std::size_t>(counter.n_states());
+  const std::size_t n_columns = all.size() / (n_rooms * n_states);
+  if (n_columns == 1) return to_numpy(std::move(all), {n_rooms, n_states});
+  return to_numpy(std::move(all), {n_rooms, n_states, n_columns});
 }
 
 nb::object moves_of(const Counter& counter) {
@@ -233,7 +206,7 @@ nb::list read_room_days(const std::string& folder, const std::string& part, doub
 
 nb::dict told(calibrate::Calibration&& made) {
   nb::dict result;
-  result["verdict"] = to_python(made.verdict);
+  result["verdict"] = to_python(calibrate::word_of(made.verdict));
   result["p"] = made.p;
   result["finding"] = calibrate::finding(made);
   result["effective_rooms"] = made.effective_rooms;
@@ -260,12 +233,8 @@ nb::dict calibrated(const std::string& pool, const LogRows& log, const calibrate
   calibrate::LogDays days;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
-    const Interval hours = calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
-    days = calibrate::days_of(log, hours);
-    auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
-    made = calibrate::Pool(std::move(rooms), settings, threads)
-               .calibrate(std::vector{calibrate::whole_log(log)}, days.whole);
-    calibrate::remember(traits, made.counter);
+    days = calibrate::days_of(log, calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml")));
+    made = calibrate::weigh_rooms(folder, {log, traits}, days, settings, threads);
   });
   nb::dict result = told(std::move(made));
   result["partial_days"] = days.partial;
@@ -290,11 +259,11 @@ void add_counters(nb::module_& module) {
       .def_ro("sensors", &Counter::sensors)
       .def_ro("holds_s", &Counter::holds_s)
       .def_prop_ro("expected_error", [](const Counter& counter) { return pair_of(counter.expected_error); })
-      .def_prop_ro("rooms", &numbers_of)
-      .def_prop_ro("weights", &weights_of)
-      .def_prop_ro("first", &first_of)
+      .def_prop_ro("rooms", [](const Counter& counter) { return of_rooms(counter, &RoomModel::number); })
+      .def_prop_ro("weights", [](const Counter& counter) { return of_rooms(counter, &RoomModel::weight); })
+      .def_prop_ro("first", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::first); })
       .def_prop_ro("moves", &moves_of)
-      .def_prop_ro("emissions", &emissions_of)
+      .def_prop_ro("emissions", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::emissions); })
       .def(
           "write", [](const Counter& counter, const std::string& file) { counting::write_counter(file, counter); },
           "file"_a);
@@ -336,39 +305,96 @@ void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) 
   to.assign(begin, begin + from.shape(1));
 }
 
-/// file, text: of the rule; the text counts where there is no file. Columns of rows, one after the other; clock:
-/// local time at each row's end, since 1970. Returns the costs as CSV, the lights, (row, light) 1 where it is
-/// lit, and remarks.
-nb::tuple control_light(const std::string& file, const std::string& text, std::vector<std::string> sensors,
-                        std::vector<std::string> areas, std::vector<std::string> doors, double window_s,
-                        Array<std::int32_t, 1> run, Array<double, 1> time_s, const std::vector<std::string>& clock,
-                        Array<std::int32_t, 1> people, Array<std::int32_t, 2> people_of_areas,
-                        Array<std::uint8_t, 2> door_open, Array<std::uint8_t, 2> bits) {
+/// (lights x delays) of each column of `pirsim control -o`: texts or numbers, NaN where nothing is known.
+nb::dict columns_of_costs(const control::Costs& costs) {
+  nb::dict columns;
+  for (const Column<control::CostLine>& column : columns_of<control::CostLine>()) {
+    nb::list cells;
+    for (const control::LightCosts& light : costs.lights) {
+      for (const control::DelayCosts& at : light.by_delay) {
+        const Cell cell = column.value({light, at});
+        if (const auto* text = std::get_if<std::string_view>(&cell))
+          cells.append(nb::str(text->data(), text->size()));
+        else if (const auto* count = std::get_if<std::int64_t>(&cell))
+          cells.append(static_cast<double>(*count));
+        else
+          cells.append(std::holds_alternative<double>(cell) ? std::get<double>(cell) : std::nan(""));
+      }
+    }
+    columns[nb::str(column.name.data(), column.name.size())] = cells;
+  }
+  return columns;
+}
+
+/// Columns of rows, one after the other, by their names in pirsim.Result.
+struct ControlRows {
+  explicit ControlRows(const nb::dict& rows)
+      : owners{nb::cast<std::vector<std::string>>(rows["sensors"]), nb::cast<std::vector<std::string>>(rows["areas"]),
+               nb::cast<std::vector<std::string>>(rows["doors"])},
+        window_s(nb::cast<double>(rows["window_s"])),
+        clock(nb::cast<std::vector<std::string>>(rows["clock"])),
+        run(nb::cast<People>(rows["run"])),
+        people(nb::cast<People>(rows["people"])),
+        time_s(nb::cast<Array<double, 1>>(rows["time_s"])),
+        people_of_areas(nb::cast<Array<std::int32_t, 2>>(rows["people_of_areas"])),
+        door_open(nb::cast<Bits>(rows["door_open"])),
+        bits(nb::cast<Bits>(rows["bits"])) {}
+
+  [[nodiscard]] std::size_t size() const { return bits.shape(0); }
+  void read(std::size_t i, Sample& row) const {
+    row.replicate = run(i);
+    row.time_s = time_s(i);
+    if (!clock.empty()) row.clock = clock[i];
+    row.people = people(i);
+    copy_row(people_of_areas, i, row.people_of_areas);
+    copy_row(door_open, i, row.doors);
+    copy_row(bits, i, row.bits);
+  }
+
+  ColumnOwners owners;
+  double window_s;
+  std::vector<std::string> clock;  ///< local time at each row's end, since 1970; empty: none
+  People run, people;
+  Array<double, 1> time_s;
+  Array<std::int32_t, 2> people_of_areas;
+  Bits door_open, bits;
+};
+
+/// rule: a file, the text of one in `rule_text`, or neither. model: what made the rows, or None.
+nb::dict control_light(const std::string& rule_file, const std::string& rule_text, const Model* model,
+                       const nb::dict& columns) {
+  const ControlRows rows(columns);
+  control::RuleSpec rule;
+  std::vector<Issue> remarks;
   std::vector<std::uint8_t> lit;
-  std::vector<std::string> lights, remarks;
-  std::string costs;
+  control::Costs costs;
   attend(nb::none(), [&](Job&) {
-    const control::RuleSpec spec = file.empty() ? control::parse_rule(text, "rule") : control::read_rule(file);
-    for (const control::LightSpec& light : spec.lights) lights.push_back(light.id);
-    control::Control control(spec, {std::move(sensors), std::move(areas), std::move(doors)}, window_s);
+    std::optional<control::RuleSpec> given;
+    if (!rule_file.empty()) given = control::read_rule(rule_file);
+    if (!rule_text.empty()) given = control::parse_rule(rule_text, "rule");
+    const SceneSpec* scene = model != nullptr ? &model->scene() : nullptr;
+    rule = control::rule_for(std::move(given), scene, scene != nullptr ? scene->name : "", remarks);
+    if (model != nullptr) {
+      const std::vector<Issue> deaf = control::deaf_seats(rule, *model);
+      remarks.insert(remarks.end(), deaf.begin(), deaf.end());
+    }
+    control::Control control(rule, rows.owners, rows.window_s);
     Sample row;
-    for (std::size_t i = 0; i < bits.shape(0); ++i) {
-      row.replicate = run(i);
-      row.time_s = time_s(i);
-      if (!clock.empty()) row.clock = clock[i];
-      row.people = people(i);
-      copy_row(people_of_areas, i, row.people_of_areas);
-      copy_row(door_open, i, row.doors);
-      copy_row(bits, i, row.bits);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      rows.read(i, row);
       const control::LitRow now = control.add(row);
       lit.insert(lit.end(), now.lit.begin(), now.lit.end());
     }
-    const control::Costs finished = control.finish();
-    for (const Issue& remark : finished.remarks) remarks.push_back(remark.message);
-    costs = control::to_csv(finished);
+    costs = control.finish();
   });
-  const std::size_t n_lights = lights.size();
-  return nb::make_tuple(costs, lights, to_numpy(std::move(lit), {bits.shape(0), n_lights}), remarks);
+  remarks.insert(remarks.end(), costs.remarks.begin(), costs.remarks.end());
+  nb::dict result;
+  result["lights"] =
+      nb::tuple(listed(rule.lights, [](const control::LightSpec& light) { return to_python(light.id); }));
+  result["columns"] = columns_of_costs(costs);
+  result["lit"] = to_numpy(std::move(lit), {rows.size(), rule.lights.size()});
+  result["remarks"] = listed(remarks, [](const Issue& remark) { return to_python(remark.message); });
+  return result;
 }
 
 }  // namespace
@@ -390,10 +416,8 @@ void add_logs(nb::module_& module) {
              "Days of a dataset, as tuples.");
   module.def("calibrate", &calibrated, "pool"_a, "log"_a, "traits"_a, "settings"_a, "threads"_a,
              "Parts of pirsim.counting.Calibration, by name.");
-  module.def(
-      "control_light", &control_light, nb::kw_only(), "file"_a, "text"_a, "sensors"_a, "areas"_a, "doors"_a,
-      "window_s"_a, "run"_a, "time_s"_a, "clock"_a, "people"_a, "people_of_areas"_a, "door_open"_a, "bits"_a,
-      "(costs as CSV, lights, lit [row, light], remarks) of a rule's file or else its text, by columns of rows.");
+  module.def("control_light", &control_light, "rule_file"_a, "rule_text"_a, "model"_a.none(), "rows"_a,
+             "Parts of pirsim.LightCosts, by name, and remarks.");
 }
 
 }  // namespace pirsim::python

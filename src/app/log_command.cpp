@@ -15,7 +15,6 @@
 #include "logs/log_rows.hpp"
 #include "model/core/text.hpp"
 #include "pirsim/calibrate.hpp"
-#include "pirsim/log_facts.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::app {
@@ -38,14 +37,25 @@ std::vector<std::string> words_of(const LogInputs& log) {
   return words;
 }
 
-Log read_log(const LogInputs& inputs, Verbosity verbosity) {
+namespace {
+
+LogMap map_of(const LogInputs& inputs) {
   LogMap map = inputs.map.empty() ? LogMap{} : io::read_log_map(inputs.map);
   if (!inputs.time_zone.empty()) map.time_zone = inputs.time_zone;
-  Log log = [&] {
-    const Progress progress({.what = "reading the log"}, verbosity);
-    const StopRequest stop;
-    return io::read_log(inputs.files, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
-  }();
+  return map;
+}
+
+Log read(const LogInputs& inputs, const LogMap& map, Verbosity verbosity) {
+  const Progress progress({.what = "reading the log"}, verbosity);
+  const StopRequest stop;
+  return io::read_log(inputs.files, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
+}
+
+}  // namespace
+
+Log read_log(const LogInputs& inputs, Verbosity verbosity) {
+  const LogMap map = map_of(inputs);
+  Log log = read(inputs, map, verbosity);
   if (log.clock == LogClock::zoned && map.time_zone.empty()) {
     log.remarks.push_back({Severity::warning, Where{inputs.files.front().string()},
                            "its times tell an offset, and no zone is named: hours of the day are taken as they are "
@@ -60,30 +70,13 @@ Log read_log(const LogInputs& inputs, Verbosity verbosity) {
 namespace {
 
 struct LogOptions {
-  std::vector<std::filesystem::path> files;
-  std::filesystem::path map, output, report;
-  std::vector<std::string> changes;
-  std::string from, to, time_zone;
+  LogInputs log;
+  std::filesystem::path output, report;
+  std::string from, to;
   std::optional<double> window_s;
   bool prints_map = false;
   Verbosity verbosity = Verbosity::normal;
 };
-
-LogMap map_of(const LogOptions& options) {
-  LogMap map;
-  if (!options.map.empty()) map = io::read_log_map(options.map, options.changes);
-  if (!options.time_zone.empty()) map.time_zone = options.time_zone;
-  if (!options.from.empty()) map.from = options.from;
-  if (!options.to.empty()) map.to = options.to;
-  return map;
-}
-
-Log read(const LogOptions& options) {
-  const LogMap map = map_of(options);
-  const Progress progress({"reading the log"}, options.verbosity);
-  const StopRequest stop;
-  return io::read_log(options.files, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
-}
 
 void write_rows(const Log& log, const LogOptions& options) {
   const LogWindows windows(log, options.window_s.value_or(usual_window_s(log)));
@@ -100,8 +93,9 @@ void write_rows(const Log& log, const LogOptions& options) {
 }
 
 std::string title_of(const LogOptions& options) {
-  const std::string name = io::stem_of_input(options.files.front());
-  return options.files.size() == 1 ? name : name + " and " + std::to_string(options.files.size() - 1) + " more";
+  const std::vector<std::filesystem::path>& files = options.log.files;
+  const std::string name = io::stem_of_input(files.front());
+  return files.size() == 1 ? name : name + " and " + std::to_string(files.size() - 1) + " more";
 }
 
 void write_report(const Log& log, const LogFacts& facts, const LogOptions& options) {
@@ -113,7 +107,10 @@ void write_report(const Log& log, const LogFacts& facts, const LogOptions& optio
 }
 
 void run_log(const LogOptions& options) {
-  const Log log = read(options);
+  LogMap map = map_of(options.log);
+  if (!options.from.empty()) map.from = options.from;
+  if (!options.to.empty()) map.to = options.to;
+  const Log log = read(options.log, map, options.verbosity);
   tell(log.remarks, options.verbosity);
   if (options.prints_map) {
     std::cout << io::to_yaml(log.map);
@@ -138,11 +135,11 @@ void add_log_command(CLI::App& app) {
   pirsim log week.csv --report week.html                           a page: the days as time lines
 )");
   const auto options = std::make_shared<LogOptions>();
-  CLI::Option* files = as_input(
-      command.add_option("files", options->files, "the log: CSV, or events as Home Assistant and CASAS write them"));
-  declare_inputs(command, files->option_text("FILE..."), options->files);
-  offer_input_file(command, "--map", options->map, "what its columns mean, YAML");
-  command.add_option("--time-zone", options->time_zone, "in which local time it is told, as Europe/Berlin")
+  CLI::Option* files = as_input(command.add_option("files", options->log.files,
+                                                   "the log: CSV, or events as Home Assistant and CASAS write them"));
+  declare_inputs(command, files->option_text("FILE..."), options->log.files);
+  offer_input_file(command, "--map", options->log.map, "what its columns mean, YAML");
+  command.add_option("--time-zone", options->log.time_zone, "in which local time it is told, as Europe/Berlin")
       ->option_text("ZONE");
   command.add_option("--from", options->from, "local time from which it is read")->option_text("TIME");
   command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
@@ -155,7 +152,7 @@ void add_log_command(CLI::App& app) {
   command.add_flag("--print-map", options->prints_map, "print the map that it was read by, and nothing else");
   offer_quiet(command, options->verbosity);
   command.callback([options] {
-    if (options->files.empty()) throw Error(ErrorCode::usage, "FILE is missing; see pirsim log --help");
+    if (options->log.files.empty()) throw Error(ErrorCode::usage, "FILE is missing; see pirsim log --help");
     run_log(*options);
   });
 }
@@ -227,17 +224,6 @@ struct CalibrateOptions {
   std::shared_ptr<DatasetWork> pool = std::make_shared<DatasetWork>();
 };
 
-/// Between the readings that rooms and log are compared by: no shorter than the log's own.
-double step_of(const CalibrateOptions& options, const Log& log) {
-  const double interval_s = static_cast<double>(log.interval_us) * 1e-6;
-  const double step_s = options.step_s.value_or(usual_window_s(log));
-  if (step_s < interval_s) {
-    throw Error(ErrorCode::usage, "--step: the log has a reading every " + shortest_number(interval_s) +
-                                      " s, so that nothing shorter can be told apart");
-  }
-  return step_s;
-}
-
 void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
   if (options.pool->inputs.verbosity == Verbosity::quiet) return;
   std::cout << calibrate::finding(calibration) << '\n'
@@ -251,63 +237,37 @@ void tell_finding(const calibrate::Calibration& calibration, const CalibrateOpti
   require_written();
 }
 
-/// Before hours of work on rooms that can't be weighed.
-void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors) {
-  if (recipe.n_rooms() < calibrate::fewest_rooms) {
-    throw Error(ErrorCode::input, Where{recipe.file.string()},
-                "a calibration needs " + std::to_string(calibrate::fewest_rooms) +
-                    " rooms at least, better 60; it has " + std::to_string(recipe.n_rooms()));
-  }
-  if (!calibrate::may_have(recipe, n_sensors)) {
-    throw Error(ErrorCode::input, Where{recipe.file.string()},
-                "the log has " + counted(static_cast<std::size_t>(n_sensors), "sensor") +
-                    ", and no room has as many: change its sensors, or name those of the room in a map (--map)");
-  }
-}
-
-std::size_t counted_readings(const LogRows& rows) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(rows.people, [](int n) { return n != log_state::unknown_count; }));
-}
-
 void run(const CalibrateOptions& options) {
   if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
-  const Log log = read_log(options.log, options.pool->inputs.verbosity);
-  const double step_s = step_of(options, log);
-  const LogFacts facts = facts_of(log);
-  const std::optional<double> hold_s = options.hold_s ? options.hold_s : calibrate::common_hold(facts);
-  if (hold_s && !options.hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
-    std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms' (--hold)\n";
-  const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
-  const std::vector<std::string> overrides = calibrate::pool_overrides(given, step_s, hold_s);
-  const dataset::RecipeSpec recipe = dataset::with_overrides(given, overrides);
-  const LogRows rows = LogWindows(log, step_s).rows();
+  DatasetWork pool = *options.pool;
+  const bool is_quiet = pool.inputs.verbosity == Verbosity::quiet;
+  const calibrate::WeighingLog log =
+      calibrate::weighing_log(read_log(options.log, pool.inputs.verbosity), options.step_s, options.hold_s);
+  if (log.hold_s && !options.hold_s && !is_quiet)
+    std::cerr << "the log's sensors hold motion for " << fixed(*log.hold_s, 1) << " s, and so do the rooms' (--hold)\n";
+  const dataset::RecipeSpec given = read_recipe(options.recipe, pool);
+  const dataset::RecipeSpec recipe =
+      dataset::with_overrides(given, calibrate::pool_overrides(given, log.rows.window_s, log.hold_s));
   const Interval hours = calibrate::hours_of(recipe);
-  const calibrate::LogDays days = calibrate::days_of(rows, hours);
+  const calibrate::LogDays days = calibrate::days_of(log.rows, hours);
   const calibrate::About about{options.recipe.filename().string(),
                                options.log.files.front().filename().string(),
                                program(),
                                hours,
                                days.whole.size(),
                                days.partial,
-                               counted_readings(rows)};
-  if (!days.partial.empty() && options.pool->inputs.verbosity != Verbosity::quiet)
+                               log.rows.n_counted()};
+  if (!days.partial.empty() && !is_quiet)
     std::cerr << "of the log are compared " << calibrate::days_compared(about) << '\n';
-  require_rooms(recipe, static_cast<int>(rows.sensors.size()));
-  DatasetWork pool = *options.pool;
+  calibrate::require_rooms(recipe, static_cast<int>(log.rows.sensors.size()));
   pool.folder = options.folder / "pool";
   make_folder(options.folder);
   const StopRequest stop;
   if (make_dataset(recipe, pool, stop) == Whole::no) return;
   const Progress progress({.what = "weighing rooms"}, pool.inputs.verbosity);
-  auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
   counting::Settings settings;
-  settings.step_s = step_s;
-  calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
-                                    .calibrate(std::vector{calibrate::whole_log(rows)}, days.whole);
-  calibrate::LogTraits traits = calibrate::traits_of(facts);
-  if (options.hold_s) std::ranges::fill(traits.holds_s, options.hold_s);
-  calibrate::remember(traits, made.counter);
+  settings.step_s = log.rows.window_s;
+  const calibrate::Calibration made = calibrate::weigh_rooms(pool.folder, log, days, settings, pool.threads);
   calibrate::write_calibration(options.folder, made, about);
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);

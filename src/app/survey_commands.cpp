@@ -100,7 +100,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   const StopRequest stop;
   const WalkTestResult result = [&] {
     Progress progress({"walking and sitting", test.grid().n_rows(), "rows of points"}, inputs.verbosity);
-    return studies::run_walk_test(test, options.threads, [&] {
+    return studies::run_walk_test(test, options.threads, [&](std::size_t, std::size_t) {
       progress.finished();
       stop.throw_if_made();
     });

@@ -48,40 +48,13 @@ std::vector<double> ranks(std::span<const double> values) {
   return ranks;
 }
 
-}  // namespace
+using counting::Counter, counting::Estimates, counting::LabelledRoom, counting::Stretch;
 
-double weighted_mean(std::span<const double> values, std::span<const double> weights) {
-  return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0) /
-         std::accumulate(weights.begin(), weights.end(), 0.0);
+std::vector<double> weights_of(const Counter& counter) {
+  std::vector<double> weights;
+  for (const counting::RoomModel& room : counter.rooms) weights.push_back(room.weight);
+  return weights;
 }
-
-double weighted_sd(std::span<const double> values, std::span<const double> weights) {
-  const double mean = weighted_mean(values, weights);
-  std::vector<double> squares;
-  for (const double value : values) squares.push_back((value - mean) * (value - mean));
-  return std::sqrt(weighted_mean(squares, weights));
-}
-
-Interval weighted_interval(std::span<const double> values, std::span<const double> weights) {
-  constexpr double tail = 0.05;
-  return {weighted_quantile(values, weights, tail), weighted_quantile(values, weights, 1.0 - tail)};
-}
-
-double rank_correlation(std::span<const double> x, std::span<const double> y) {
-  constexpr std::size_t fewest = 3;
-  if (x.size() < fewest) return 0.0;
-  const std::vector<double> a = ranks(x), b = ranks(y), one(x.size(), 1.0);
-  const double spread = weighted_sd(a, one) * weighted_sd(b, one);
-  if (!(spread > 0.0)) return 0.0;
-  const double product = std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(x.size());
-  return (product - weighted_mean(a, one) * weighted_mean(b, one)) / spread;
-}
-
-namespace {
-
-using counting::Counter;
-using counting::Estimates;
-using counting::LabelledRoom;
 
 /// What each room's model says of a day.
 struct DayByRooms {
@@ -138,8 +111,8 @@ ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room, std:
   scores[own] = -std::numeric_limits<double>::infinity();
   Counter others = counter;
   counting::weigh(others, scores);
-  std::vector<double> weights, alike(scores.size(), 1.0 / static_cast<double>(scores.size() - 1));
-  for (const counting::RoomModel& model : others.rooms) weights.push_back(model.weight);
+  const std::vector<double> weights = weights_of(others);
+  std::vector<double> alike(scores.size(), 1.0 / static_cast<double>(scores.size() - 1));
   alike[own] = 0.0;
   AbsoluteError weighed_error, alike_error;
   for (std::size_t d = 0; d < days.size(); ++d) {
@@ -148,52 +121,6 @@ ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room, std:
   }
   return {weighed_error.mean(), alike_error.mean()};
 }
-
-}  // namespace
-
-std::vector<bool> in_use(const std::vector<int>& people, double step_s) {
-  constexpr double around_s = 1800.0;
-  const auto around = static_cast<std::ptrdiff_t>(std::lround(around_s / step_s));
-  const auto is_there = [](int n) { return n > 0; };
-  const auto first = std::ranges::find_if(people, is_there);
-  std::vector<bool> counts(people.size(), false);
-  if (first == people.end()) return counts;
-  const auto last = std::find_if(people.rbegin(), people.rend(), is_there).base();  // one beyond
-  const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, first - people.begin() - around);
-  const std::ptrdiff_t to = std::min(std::ssize(people), last - people.begin() + around);
-  std::fill(counts.begin() + from, counts.begin() + to, true);
-  return counts;
-}
-
-RoomErrors errors_of_rooms(const Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
-  RoomErrors errors;
-  ordered_parallel<ErrorOfRoom>(
-      rooms.size(), threads, [&](std::size_t r) { return error_of_room(counter, rooms[r], r); },
-      [&](ErrorOfRoom& one) {
-        errors.weighed.push_back(one.weighed);
-        errors.alike.push_back(one.alike);
-      });
-  return errors;
-}
-
-void expect_error(const RoomErrors& errors, std::span<const double> weights, Calibration& made) {
-  // Square roots of the weights: with the weights themselves, intervals were too narrow (83 of 100 rooms that were left
-  // out in turn; with their roots 90).
-  std::vector<double> weighed, alike, own_weights, roots;
-  for (std::size_t r = 0; r < weights.size(); ++r) {
-    if (!errors.weighed[r] || !errors.alike[r]) continue;
-    weighed.push_back(*errors.weighed[r]);
-    alike.push_back(*errors.alike[r]);
-    own_weights.push_back(weights[r]);
-    roots.push_back(std::sqrt(weights[r]));
-  }
-  if (weighed.empty()) return;
-  made.mean_error = weighted_mean(weighed, own_weights);
-  made.error_alike = weighted_mean(alike, own_weights);
-  made.counter.expected_error = weighted_interval(weighed, roots);
-}
-
-namespace {
 
 /// Of row i from the mean of the others, by their covariance.
 double distance_from_others(const Eigen::MatrixXd& rows, Eigen::Index i) {
@@ -209,30 +136,6 @@ double distance_from_others(const Eigen::MatrixXd& rows, Eigen::Index i) {
   const Eigen::VectorXd away = (rows.row(i) - mean).transpose();
   return away.dot(stats::detail::solve_symmetric(covariance, away));
 }
-
-}  // namespace
-
-double unlike_share(const stats::Matrix<double>& rows, std::span<const double> vector) {
-  Eigen::MatrixXd all(static_cast<Eigen::Index>(rows.rows() + 1), static_cast<Eigen::Index>(rows.columns()));
-  all.topRows(all.rows() - 1) = stats::detail::as_eigen(rows);
-  all.bottomRows(1) = stats::detail::as_eigen(vector).transpose();
-  const double own = distance_from_others(all, all.rows() - 1);
-  int as_far = 1;
-  for (Eigen::Index i = 0; i + 1 < all.rows(); ++i) as_far += distance_from_others(all, i) >= own ? 1 : 0;
-  return static_cast<double>(as_far) / static_cast<double>(all.rows());
-}
-
-double unlike_share(std::span<const double> values, double value) {
-  std::vector<double> all(values.begin(), values.end());
-  all.push_back(value);
-  const double middle = stats::quantile(all, 0.5), own = std::abs(value - middle);
-  const auto as_far = std::ranges::count_if(all, [&](double other) { return std::abs(other - middle) >= own; });
-  return static_cast<double>(as_far) / static_cast<double>(all.size());
-}
-
-namespace {
-
-using counting::Stretch;
 
 constexpr double minute_s = 60.0, hour_s = 3600.0;
 constexpr double window_min = 5.0, pause_min = 10.0, busy_share = 0.7;
@@ -347,49 +250,6 @@ std::vector<double> of_stretch(const Stretch& stretch, const Active& active, dou
     values.push_back(likeness(stretch, active));
   }
   return values;
-}
-
-}  // namespace
-
-double told(const StatisticInfo& info, double value, double step_s) {
-  return info.scale == StatisticInfo::Scale::plain ? value : std::exp(value) * step_s / minute_s;
-}
-
-std::vector<StatisticInfo> statistics_of(int n_sensors) {
-  using Scale = StatisticInfo::Scale;
-  std::vector<StatisticInfo> all{{"readings with motion, busiest sensor", "share"},
-                                 {"readings with motion, any sensor", "share"},
-                                 {"mean run with motion", "min", Scale::logarithm},
-                                 {"mean run without", "min", Scale::logarithm},
-                                 {"5 min without motion", "share"},
-                                 {"5 min with motion in more than 70 %", "share"},
-                                 {"from first to last motion", "h"},
-                                 {"pauses longer than 10 min", "1/h"},
-                                 {"first motion after the hours begin", "h"}};
-  if (n_sensors > 1) {
-    all.push_back({"readings with motion, quietest sensor", "share"});
-    all.push_back({"likeness of first and last sensor", "phi"});
-  }
-  return all;
-}
-
-std::vector<std::vector<double>> motion_statistics(std::span<const Stretch> stretches, double step_s) {
-  std::vector<std::vector<double>> all;
-  for (const Stretch& stretch : stretches) {
-    const Active active = active_part(stretch);
-    if (active.with_motion >= least_readings_with_motion) all.push_back(of_stretch(stretch, active, step_s));
-  }
-  return all;
-}
-
-namespace {
-
-using counting::Stretch;
-
-std::vector<double> weights_of(const counting::Counter& counter) {
-  std::vector<double> weights;
-  for (const counting::RoomModel& room : counter.rooms) weights.push_back(room.weight);
-  return weights;
 }
 
 // -- parameters ------------------------------------------------------------------------------------------------------
@@ -536,6 +396,124 @@ std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatis
 
 }  // namespace
 
+double weighted_mean(std::span<const double> values, std::span<const double> weights) {
+  return std::inner_product(values.begin(), values.end(), weights.begin(), 0.0) /
+         std::accumulate(weights.begin(), weights.end(), 0.0);
+}
+
+double weighted_sd(std::span<const double> values, std::span<const double> weights) {
+  const double mean = weighted_mean(values, weights);
+  std::vector<double> squares;
+  for (const double value : values) squares.push_back((value - mean) * (value - mean));
+  return std::sqrt(weighted_mean(squares, weights));
+}
+
+Interval weighted_interval(std::span<const double> values, std::span<const double> weights) {
+  constexpr double tail = 0.05;
+  return {weighted_quantile(values, weights, tail), weighted_quantile(values, weights, 1.0 - tail)};
+}
+
+double rank_correlation(std::span<const double> x, std::span<const double> y) {
+  constexpr std::size_t fewest = 3;
+  if (x.size() < fewest) return 0.0;
+  const std::vector<double> a = ranks(x), b = ranks(y), one(x.size(), 1.0);
+  const double spread = weighted_sd(a, one) * weighted_sd(b, one);
+  if (!(spread > 0.0)) return 0.0;
+  const double product = std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / static_cast<double>(x.size());
+  return (product - weighted_mean(a, one) * weighted_mean(b, one)) / spread;
+}
+
+std::vector<bool> in_use(const std::vector<int>& people, double step_s) {
+  constexpr double around_s = 1800.0;
+  const auto around = static_cast<std::ptrdiff_t>(std::lround(around_s / step_s));
+  const auto is_there = [](int n) { return n > 0; };
+  const auto first = std::ranges::find_if(people, is_there);
+  std::vector<bool> counts(people.size(), false);
+  if (first == people.end()) return counts;
+  const auto last = std::find_if(people.rbegin(), people.rend(), is_there).base();  // one beyond
+  const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, first - people.begin() - around);
+  const std::ptrdiff_t to = std::min(std::ssize(people), last - people.begin() + around);
+  std::fill(counts.begin() + from, counts.begin() + to, true);
+  return counts;
+}
+
+RoomErrors errors_of_rooms(const Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
+  RoomErrors errors;
+  ordered_parallel<ErrorOfRoom>(
+      rooms.size(), threads, [&](std::size_t r) { return error_of_room(counter, rooms[r], r); },
+      [&](ErrorOfRoom& one) {
+        errors.weighed.push_back(one.weighed);
+        errors.alike.push_back(one.alike);
+      });
+  return errors;
+}
+
+void expect_error(const RoomErrors& errors, std::span<const double> weights, Calibration& made) {
+  // Square roots of the weights: with the weights themselves, intervals were too narrow (83 of 100 rooms that were left
+  // out in turn; with their roots 90).
+  std::vector<double> weighed, alike, own_weights, roots;
+  for (std::size_t r = 0; r < weights.size(); ++r) {
+    if (!errors.weighed[r] || !errors.alike[r]) continue;
+    weighed.push_back(*errors.weighed[r]);
+    alike.push_back(*errors.alike[r]);
+    own_weights.push_back(weights[r]);
+    roots.push_back(std::sqrt(weights[r]));
+  }
+  if (weighed.empty()) return;
+  made.mean_error = weighted_mean(weighed, own_weights);
+  made.error_alike = weighted_mean(alike, own_weights);
+  made.counter.expected_error = weighted_interval(weighed, roots);
+}
+
+double unlike_share(const stats::Matrix<double>& rows, std::span<const double> vector) {
+  Eigen::MatrixXd all(static_cast<Eigen::Index>(rows.rows() + 1), static_cast<Eigen::Index>(rows.columns()));
+  all.topRows(all.rows() - 1) = stats::detail::as_eigen(rows);
+  all.bottomRows(1) = stats::detail::as_eigen(vector).transpose();
+  const double own = distance_from_others(all, all.rows() - 1);
+  int as_far = 1;
+  for (Eigen::Index i = 0; i + 1 < all.rows(); ++i) as_far += distance_from_others(all, i) >= own ? 1 : 0;
+  return static_cast<double>(as_far) / static_cast<double>(all.rows());
+}
+
+double unlike_share(std::span<const double> values, double value) {
+  std::vector<double> all(values.begin(), values.end());
+  all.push_back(value);
+  const double middle = stats::quantile(all, 0.5), own = std::abs(value - middle);
+  const auto as_far = std::ranges::count_if(all, [&](double other) { return std::abs(other - middle) >= own; });
+  return static_cast<double>(as_far) / static_cast<double>(all.size());
+}
+
+double told(const StatisticInfo& info, double value, double step_s) {
+  return info.scale == StatisticInfo::Scale::plain ? value : std::exp(value) * step_s / minute_s;
+}
+
+std::vector<StatisticInfo> statistics_of(int n_sensors) {
+  using Scale = StatisticInfo::Scale;
+  std::vector<StatisticInfo> all{{"readings with motion, busiest sensor", "share"},
+                                 {"readings with motion, any sensor", "share"},
+                                 {"mean run with motion", "min", Scale::logarithm},
+                                 {"mean run without", "min", Scale::logarithm},
+                                 {"5 min without motion", "share"},
+                                 {"5 min with motion in more than 70 %", "share"},
+                                 {"from first to last motion", "h"},
+                                 {"pauses longer than 10 min", "1/h"},
+                                 {"first motion after the hours begin", "h"}};
+  if (n_sensors > 1) {
+    all.push_back({"readings with motion, quietest sensor", "share"});
+    all.push_back({"likeness of first and last sensor", "phi"});
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> motion_statistics(std::span<const Stretch> stretches, double step_s) {
+  std::vector<std::vector<double>> all;
+  for (const Stretch& stretch : stretches) {
+    const Active active = active_part(stretch);
+    if (active.with_motion >= least_readings_with_motion) all.push_back(of_stretch(stretch, active, step_s));
+  }
+  return all;
+}
+
 struct Pool::Parts {
   std::vector<PoolRoom> rooms;
   counting::Counter counter;
@@ -544,9 +522,8 @@ struct Pool::Parts {
 };
 
 Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsigned threads) {
-  constexpr std::size_t fewest = fewest_rooms;
-  if (rooms.size() < fewest) {
-    throw Error(ErrorCode::input, "a calibration needs " + std::to_string(fewest) +
+  if (rooms.size() < fewest_rooms) {
+    throw Error(ErrorCode::input, "a calibration needs " + std::to_string(fewest_rooms) +
                                       " rooms at least, better 60; there are " + std::to_string(rooms.size()));
   }
   std::vector<counting::LabelledRoom> labelled;
@@ -579,8 +556,7 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   const std::vector<double> of_log = mean_of_first(log_days, log_days.size());
   made.p = unlike_share(known.rows, of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
-  if (made.verdict == Verdict::none_like_it)
-    made.counter.warning = "Hardly a room that this counter comes from makes such a log: don't rely on its counts.";
+  made.counter.warning = warning_of(made.verdict);
   made.statistics = compared(rooms, known, of_log, made.counter);
   return made;
 }

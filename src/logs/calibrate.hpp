@@ -13,6 +13,11 @@
 
 namespace pirsim::calibrate {
 
+inline constexpr int fewest_rooms = 10;  ///< that can be weighed
+
+/// What a counter of such a calibration warns of; empty: of nothing.
+[[nodiscard]] std::string warning_of(Verdict verdict);
+
 // Weights are at least 0, and not all 0.
 
 [[nodiscard]] double weighted_mean(std::span<const double> values, std::span<const double> weights);

@@ -7,19 +7,16 @@
 
 #include "files/disk/file.hpp"
 #include "files/read/yaml.hpp"
+#include "logs/calibrate.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/calibrate.hpp"
 #include "pirsim/csv.hpp"
 #include "show/report.hpp"
 
-// A calibration as a page for a reader.
+// A calibration, and a log counted, as pages and files.
 
 namespace pirsim::calibrate {
-
-[[nodiscard]] io::Report page(const Calibration& calibration, const About& about);
-[[nodiscard]] std::string word_of(Verdict verdict);  ///< "like-these"
-
 namespace {
 
 std::string range(const Interval& interval, int digits = 2) {
@@ -139,91 +136,7 @@ io::ReportSection error_section(const Calibration& calibration) {
   return section;
 }
 
-}  // namespace
-
-std::string word_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::like_these:
-      return "like-these";
-    case Verdict::none_like_it:
-      return "none-like-it";
-    case Verdict::too_little_told:
-      break;
-  }
-  return "too-little-told";
-}
-
-std::string how_much_it_told(const Calibration& calibration) {
-  constexpr double hardly = 0.8;  // of the rooms
-  const std::string all = counted(calibration.rooms.size(), "room");
-  return "The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " + all +
-         (calibration.effective_rooms > hardly * static_cast<double>(calibration.rooms.size())
-              ? ": the log hardly tells them apart."
-              : ".") +
-         (calibration.counter.expected_error && calibration.verdict != Verdict::none_like_it
-              ? " With all rooms alike the error would be " + fixed(calibration.error_alike, 2) + "."
-              : "");
-}
-
-std::string finding(const Calibration& calibration) {
-  const std::optional<Interval>& expected = calibration.counter.expected_error;
-  const std::string error = expected ? " If it is one, expect an error of " + fixed(calibration.mean_error, 2) +
-                                           " people (" + range(*expected) + ")."
-                                     : "";
-  switch (calibration.verdict) {
-    case Verdict::like_these:
-      return "Rooms of this recipe make such logs, so yours may be one of them." + error;
-    case Verdict::none_like_it: {
-      std::string outside;
-      for (const Statistic& one : calibration.statistics) {
-        if (one.p <= verdict_level) outside += (outside.empty() ? "" : "; ") + one.name;
-      }
-      return "Hardly a room of this recipe makes such a log" +
-             (outside.empty() ? " (by its numbers together)" : ": " + outside) +
-             ". Neither counts nor errors can be relied on.";
-    }
-    case Verdict::too_little_told:
-      break;
-  }
-  return "Too little is told in the hours that the recipe simulates to say whether yours is one of its rooms: a day "
-         "counts if nine tenths of them are known, with some motion." +
-         error;
-}
-
-std::string days_compared(const About& about) {
-  const std::string hours = "from " + hours_text(about.hours.low) + " to " + hours_text(about.hours.high);
-  const std::size_t n_partial = about.partial.size();
-  if (n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
-  constexpr std::size_t most_told = 7;
-  std::string dates = joined({about.partial.begin(), about.partial.begin() + std::min(most_told, n_partial)}, ", ");
-  if (n_partial > most_told) dates += " and " + counted(n_partial - most_told, "other");
-  return (about.n_days == 0 ? "none" : std::to_string(about.n_days)) + " of " +
-         counted(about.n_days + n_partial, "day") + ", " + hours + ": on " + dates +
-         " a sensor is known for less than nine tenths of these hours" +
-         (about.n_days == 0 ? "; so there will be no verdict: let the recipe's schedule have hours that the log has"
-                            : "");
-}
-
-io::Report page(const Calibration& calibration, const About& about) {
-  io::Report report;
-  report.title = "Calibration";
-  report.finding = finding(calibration);
-  report.paragraphs = {
-      "Log: " + about.log + ", " + days_compared(about) + ". Recipe: " + about.recipe + ", " +
-      counted(calibration.rooms.size(), "room") + ". Each room is weighed by how well its model explains the log" +
-      (about.n_counted == 0 ? std::string(".")
-                            : ", and the counts of " + counted(about.n_counted, "reading") + " in it.")};
-  report.sections = {error_section(calibration)};
-  if (!calibration.statistics.empty()) report.sections.push_back(statistics_section(calibration));
-  report.sections.push_back(parameters_section(calibration));
-  report.sections.push_back(rooms_section(calibration));
-  report.footer = about.made_by;
-  return report;
-}
-
 // What a calibration leaves behind for programs: weights, the counter, the numbers of the page, the recipe.
-
-namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -303,7 +216,189 @@ std::vector<std::string> scene_overrides(const dataset::RecipeSpec& recipe, cons
   return overrides;
 }
 
+io::Report page(const Calibration& calibration, const About& about) {
+  io::Report report;
+  report.title = "Calibration";
+  report.finding = finding(calibration);
+  report.paragraphs = {
+      "Log: " + about.log + ", " + days_compared(about) + ". Recipe: " + about.recipe + ", " +
+      counted(calibration.rooms.size(), "room") + ". Each room is weighed by how well its model explains the log" +
+      (about.n_counted == 0 ? std::string(".")
+                            : ", and the counts of " + counted(about.n_counted, "reading") + " in it.")};
+  report.sections = {error_section(calibration)};
+  if (!calibration.statistics.empty()) report.sections.push_back(statistics_section(calibration));
+  report.sections.push_back(parameters_section(calibration));
+  report.sections.push_back(rooms_section(calibration));
+  report.footer = about.made_by;
+  return report;
+}
+
+// A log counted.
+
+std::size_t n_counts(const LogCounts& counts) { return static_cast<std::size_t>(counts.estimates.n_counts); }
+
+std::span<const double> probabilities(const LogCounts& counts, std::size_t reading) {
+  return std::span(counts.estimates.probabilities).subspan(reading * n_counts(counts), n_counts(counts));
+}
+
+/// Of a reading's probabilities.
+double mean_count(std::span<const double> probabilities) {
+  double mean = 0.0;
+  for (std::size_t n = 0; n < probabilities.size(); ++n) mean += static_cast<double>(n) * probabilities[n];
+  return mean;
+}
+
+/// Readings of one date, or all of a log without dates.
+struct CountedDay {
+  std::string name;
+  std::size_t begin = 0, end = 0;
+};
+
+std::vector<CountedDay> days_of(const LogRows& rows) {
+  std::vector<CountedDay> days;
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    const std::string date = rows.clock == LogClock::elapsed ? "" : to_text(rows.begin[i], rows.clock).substr(0, 10);
+    if (days.empty() || days.back().name != date) days.push_back({date, i, i});
+    days.back().end = i + 1;
+  }
+  return days;
+}
+
+/// Stretches in which nobody knows the number.
+std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const CountedDay& day) {
+  std::vector<io::SeriesChart::Phase> phases;
+  for (std::size_t i = day.begin; i < day.end;) {
+    std::size_t end = i;
+    while (end < day.end && !counts.estimates.is_told(end)) ++end;
+    if (end > i) {
+      phases.push_back({"unknown", static_cast<double>(i - day.begin) * counts.rows.window_s,
+                        static_cast<double>(end - day.begin) * counts.rows.window_s});
+    }
+    i = std::max(end, i + 1);
+  }
+  return phases;
+}
+
+/// The middle 90 % of a reading's counts.
+Interval likely(const LogCounts& counts, std::size_t reading) {
+  return {static_cast<double>(counts.estimates.quantile(reading, 0.05)),
+          static_cast<double>(counts.estimates.quantile(reading, 0.95))};
+}
+
+io::SeriesChart chart_of(const LogCounts& counts, const CountedDay& day) {
+  const LogRows& rows = counts.rows;
+  io::SeriesChart chart;
+  chart.title = day.name.empty() ? "The log" : day.name;
+  chart.window_s = rows.window_s;
+  chart.end_s = static_cast<double>(day.end - day.begin) * rows.window_s;
+  for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
+    io::SeriesChart::Row row{rows.sensors[k], {}};
+    for (std::size_t i = day.begin; i < day.end; ++i) {
+      if (rows.at(i, k) == 1) row.times_s.push_back(static_cast<double>(i + 1 - day.begin) * rows.window_s);
+    }
+    chart.rows.push_back(std::move(row));
+  }
+  chart.phases = unknown_phases(counts, day);
+  for (std::size_t i = day.begin; i < day.end; ++i) {
+    io::SeriesChart::Count now{static_cast<double>(i - day.begin) * rows.window_s};
+    if (counts.estimates.is_told(i)) now.people = counts.estimates.count(i), now.likely = likely(counts, i);
+    const bool is_same =
+        !chart.people.empty() && chart.people.back().people == now.people && chart.people.back().likely == now.likely;
+    if (!is_same) chart.people.push_back(now);
+  }
+  if (rows.clock != LogClock::elapsed && day.begin + 1 < rows.n_windows())
+    chart.first_clock = to_text(rows.begin[day.begin + 1], rows.clock).substr(0, 19);
+  return chart;
+}
+
+/// Hours with each count.
+io::Table hours_table(const LogCounts& counts, const std::vector<CountedDay>& days) {
+  io::Table table{{"day"}, {}};
+  for (std::size_t n = 0; n < n_counts(counts); ++n) table.headings.push_back(counted(n, "person", "people") + ", h");
+  table.headings.emplace_back("unknown, h");
+  for (const CountedDay& day : days) {
+    std::vector<double> hours(n_counts(counts) + 1, 0.0);
+    for (std::size_t i = day.begin; i < day.end; ++i) {
+      const std::size_t column =
+          counts.estimates.is_told(i) ? static_cast<std::size_t>(counts.estimates.count(i)) : n_counts(counts);
+      hours[column] += counts.rows.window_s / 3600.0;
+    }
+    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.name});
+    for (const double one : hours) row.push_back(fixed(one, 1));
+  }
+  return table;
+}
+
 }  // namespace
+
+std::string word_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::like_these:
+      return "like-these";
+    case Verdict::none_like_it:
+      return "none-like-it";
+    case Verdict::too_little_told:
+      break;
+  }
+  return "too-little-told";
+}
+
+std::string warning_of(Verdict verdict) {
+  return verdict == Verdict::none_like_it
+             ? "Hardly a room that this counter comes from makes such a log: don't rely on its counts."
+             : "";
+}
+
+std::string how_much_it_told(const Calibration& calibration) {
+  constexpr double hardly = 0.8;  // of the rooms
+  const std::string all = counted(calibration.rooms.size(), "room");
+  return "The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " + all +
+         (calibration.effective_rooms > hardly * static_cast<double>(calibration.rooms.size())
+              ? ": the log hardly tells them apart."
+              : ".") +
+         (calibration.counter.expected_error && calibration.verdict != Verdict::none_like_it
+              ? " With all rooms alike the error would be " + fixed(calibration.error_alike, 2) + "."
+              : "");
+}
+
+std::string finding(const Calibration& calibration) {
+  const std::optional<Interval>& expected = calibration.counter.expected_error;
+  const std::string error = expected ? " If it is one, expect an error of " + fixed(calibration.mean_error, 2) +
+                                           " people (" + range(*expected) + ")."
+                                     : "";
+  switch (calibration.verdict) {
+    case Verdict::like_these:
+      return "Rooms of this recipe make such logs, so yours may be one of them." + error;
+    case Verdict::none_like_it: {
+      std::string outside;
+      for (const Statistic& one : calibration.statistics) {
+        if (one.p <= verdict_level) outside += (outside.empty() ? "" : "; ") + one.name;
+      }
+      return "Hardly a room of this recipe makes such a log" +
+             (outside.empty() ? " (by its numbers together)" : ": " + outside) +
+             ". Neither counts nor errors can be relied on.";
+    }
+    case Verdict::too_little_told:
+      break;
+  }
+  return "Too little is told in the hours that the recipe simulates to say whether yours is one of its rooms: a day "
+         "counts if nine tenths of them are known, with some motion." +
+         error;
+}
+
+std::string days_compared(const About& about) {
+  const std::string hours = "from " + hours_text(about.hours.low) + " to " + hours_text(about.hours.high);
+  const std::size_t n_partial = about.partial.size();
+  if (n_partial == 0) return counted(about.n_days, "day") + ", " + hours;
+  constexpr std::size_t most_told = 7;
+  std::string dates = joined({about.partial.begin(), about.partial.begin() + std::min(most_told, n_partial)}, ", ");
+  if (n_partial > most_told) dates += " and " + counted(n_partial - most_told, "other");
+  return (about.n_days == 0 ? "none" : std::to_string(about.n_days)) + " of " +
+         counted(about.n_days + n_partial, "day") + ", " + hours + ": on " + dates +
+         " a sensor is known for less than nine tenths of these hours" +
+         (about.n_days == 0 ? "; so there will be no verdict: let the recipe's schedule have hours that the log has"
+                            : "");
+}
 
 std::string weighted_recipe(const dataset::RecipeSpec& recipe, const Calibration& calibration, const fs::path& folder) {
   std::vector<double> weights(static_cast<std::size_t>(recipe.n_rooms()), 0.0);
@@ -329,6 +424,84 @@ void write_calibration(const fs::path& folder, const Calibration& calibration, c
   counting::write_counter(folder / "counter.json", calibration.counter);
   io::write_text_file(folder / "calibration.json", numbers(calibration, about));
   io::write_report(folder / "calibration.html", page(calibration, about));
+}
+
+std::string in_words(const CountError& error) {
+  return "wrong by " + fixed(error.mean, 2) + " people on average, over " + counted(error.readings, "reading") +
+         (error.occupied == 0 || error.occupied == error.readings
+              ? ""
+              : "; by " + fixed(error.while_occupied, 2) + " over the " + std::to_string(error.occupied) +
+                    " with somebody");
+}
+
+std::string how_sure(const LogCounts& counts) {
+  constexpr double sure = 0.8;  // assumed: one of five such numbers may be another
+  std::size_t n = 0, n_sure = 0, n_unknown = 0;
+  for (std::size_t i = 0; i < counts.rows.n_windows(); ++i) {
+    const int people = counts.estimates.count(i);
+    n_unknown += people == counting::unknown_count ? 1U : 0U;
+    if (people <= 0) continue;
+    ++n;
+    n_sure += probabilities(counts, i)[static_cast<std::size_t>(people)] >= sure ? 1U : 0U;
+  }
+  const auto hours = [&](std::size_t readings) {
+    return fixed(static_cast<double>(readings) * counts.rows.window_s / 3600.0, 1);
+  };
+  std::string told = n == 0 ? ""
+                            : "Somebody is there for " + hours(n) + " h; the number is told with 80 % or more for " +
+                                  hours(n_sure) + " h of them.";
+  if (n_unknown > 0)
+    told += (n == 0 ? "" : " ") + ("For " + hours(n_unknown)) + " h nothing is known, and no number is told.";
+  return told;
+}
+
+void write_counts(std::ostream& out, const LogCounts& counts) {
+  const LogRows& rows = counts.rows;
+  const bool has_clock = rows.clock != LogClock::elapsed;
+  out << (has_clock ? "time" : "time_s") << ",people,mean";
+  for (std::size_t n = 0; n < n_counts(counts); ++n) out << ",p" << n;
+  out << '\n';
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    LogMoment end = rows.begin[i];
+    end.us += std::llround(rows.window_s * 1e6);
+    if (i + 1 < rows.n_windows()) end.offset_s = rows.begin[i + 1].offset_s;
+    std::string line = has_clock ? to_text(end, rows.clock) : io::csv_number(end.seconds());
+    const auto of_reading = probabilities(counts, i);
+    const bool is_told = counts.estimates.is_told(i);
+    line += ',' + (is_told ? std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2) : ",");
+    for (const double p : of_reading) line += ',' + (is_told ? fixed(p, 3) : "");
+    out << line << '\n';
+  }
+}
+
+void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
+                       const std::string& made_by) {
+  const std::vector<CountedDay> days = days_of(counts.rows);
+  constexpr std::size_t most_days = 31;
+  io::Report report;
+  report.title = "How many people were there?";
+  report.footer = made_by;
+  std::string error;
+  if (const auto known = error_of(counts))
+    error = "Compared with the log's own counts it is " + in_words(*known) + ".";
+  else if (counts.expected_error && counts.warning.empty())
+    error = "In rooms like those that the counter comes from such counts are wrong by " +
+            fixed(counts.expected_error->low, 2) + " to " + fixed(counts.expected_error->high, 2) +
+            " people on average, from half an hour before the first person to half an hour after the last.";
+  report.finding = counts.warning + (counts.warning.empty() || error.empty() ? "" : " ") + error;
+  report.paragraphs = {
+      "Log: " + log +
+      ". Each day shows the estimated number of people, a line, above the readings with motion of each sensor; nine "
+      "times of ten the number is within what is pale."};
+  if (const std::string sure = how_sure(counts); !sure.empty()) report.paragraphs.push_back(sure);
+  if (days.size() > most_days)
+    report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
+  report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});
+  io::ReportSection lines{"Day by day", {}, {}, {}};
+  for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d)
+    lines.charts.emplace_back(chart_of(counts, days[d]));
+  report.sections.push_back(std::move(lines));
+  io::write_report(file, report);
 }
 
 }  // namespace pirsim::calibrate

@@ -27,110 +27,7 @@ double normalize(std::span<double> values) {
   return sum;
 }
 
-}  // namespace
-
-void divide_rows(std::span<double> table, std::size_t n_columns) {
-  for (std::size_t row = 0; row < table.size(); row += n_columns) normalize(table.subspan(row, n_columns));
-}
-
-std::vector<Reading> readings_of(const Stretch& stretch) {
-  std::vector<Reading> readings(stretch.n_readings());
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    for (std::size_t k = 0; k < size(stretch.n_sensors); ++k) {
-      const std::uint8_t bit = stretch.motion[i * size(stretch.n_sensors) + k];
-      readings[i].known += bit == unknown_bit ? 0 : 1;
-      readings[i].active += bit == 1 ? 1 : 0;
-    }
-    if (!stretch.people.empty()) readings[i].people = stretch.people[i];
-  }
-  return readings;
-}
-
-StateRange states_of(const Counter& counter, const Reading& reading) {
-  if (reading.people == unknown_count) return {0, size(counter.n_states())};
-  const std::size_t count = size(std::min(reading.people, counter.n_counts - 1)), modes = size(counter.settings.modes);
-  return {count * modes, (count + 1) * modes};
-}
-
-void likelihood(const Counter& counter, std::span<const double> emissions, const Reading& reading,
-                std::vector<double>& out) {
-  const std::size_t n_symbols = size(counter.n_symbols());
-  const StateRange range = states_of(counter, reading);
-  out.assign(size(counter.n_states()), 0.0);
-  for (std::size_t state = range.begin; state < range.end; ++state) {
-    const std::span<const double> own = emissions.subspan(state * n_symbols, n_symbols);
-    if (reading.known == counter.n_sensors) {
-      out[state] = own[size(reading.active)];
-      continue;
-    }
-    const int unknown = counter.n_sensors - reading.known;
-    for (int all = reading.active; all <= reading.active + unknown; ++all) {
-      out[state] += own[size(all)] * choose(all, reading.active) *
-                    choose(counter.n_sensors - all, reading.known - reading.active) /
-                    choose(counter.n_sensors, reading.known);
-    }
-  }
-}
-
-double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
-            const Reading& reading, std::span<double> after) {
-  const std::size_t n = size(counter.n_states());
-  const StateRange range = states_of(counter, reading);
-  std::vector<double> seen;
-  likelihood(counter, room.emissions, reading, seen);
-  std::ranges::fill(after, 0.0);
-  if (before.empty()) std::ranges::copy(room.first, after.begin());
-  for (std::size_t from = range_before.begin; from < range_before.end && !before.empty(); ++from) {
-    for (std::size_t to = range.begin; to < range.end; ++to) after[to] += before[from] * counter.moves[from * n + to];
-  }
-  for (std::size_t state = 0; state < n; ++state) after[state] *= seen[state];
-  return normalize(after);
-}
-
-ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings) {
-  const std::size_t n = size(counter.n_states());
-  ForwardPass pass{std::vector<double>(readings.size() * n), 0.0};
-  std::span<const double> before;
-  StateRange range;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const std::span<double> now(pass.beliefs.data() + i * n, n);
-    pass.log_likelihood += std::log(step(counter, room, before, range, readings[i], now));
-    before = now;
-    range = states_of(counter, readings[i]);
-  }
-  return pass;
-}
-
-void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
-            std::span<double> moved) {
-  const std::size_t n = size(counter.n_states());
-  constexpr double most_ratio = 1e290;  // finite, however sure the past was of what the future refutes
-  std::vector<double> ratio(n);         // of what is believed of the next reading to what was expected of it
-  for (std::size_t i = readings.size() < 2 ? 0 : readings.size() - 1; i-- > 0;) {
-    const std::span<double> now(beliefs.data() + i * n, n), next(beliefs.data() + (i + 1) * n, n);
-    const StateRange range = states_of(counter, readings[i]), after = states_of(counter, readings[i + 1]);
-    std::ranges::fill(ratio, 0.0);
-    for (std::size_t from = range.begin; from < range.end; ++from) {
-      for (std::size_t to = after.begin; to < after.end; ++to) ratio[to] += now[from] * counter.moves[from * n + to];
-    }
-    for (std::size_t to = after.begin; to < after.end; ++to)
-      ratio[to] = next[to] > 0.0 ? std::min(next[to] / ratio[to], most_ratio) : 0.0;
-    for (std::size_t from = range.begin; from < range.end; ++from) {
-      double later = 0.0;
-      for (std::size_t to = after.begin; to < after.end; ++to) {
-        const double factor = counter.moves[from * n + to] * ratio[to];
-        later += factor;
-        if (!moved.empty()) moved[from * n + to] += now[from] * factor;
-      }
-      now[from] *= later;
-    }
-    normalize(now);
-  }
-}
-
 // The Baum-Welch algorithm where the counts are known and the modes are not.
-
-namespace {
 
 constexpr double least_move = 1e-3;  ///< pseudo-moves, shared as the first ones are: none becomes impossible
 
@@ -303,25 +200,6 @@ void require_alike(std::span<const LabelledRoom> rooms) {
   if (counts_of(rooms) < 2) throw Error(ErrorCode::input, "nobody is in any of the rooms: there is nothing to learn");
 }
 
-}  // namespace
-
-Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads) {
-  require_alike(rooms);
-  Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}, {}};
-  const std::vector<double> moves_at_first = first_moves(counter, rooms);
-  counter.moves = moves_at_first;
-  const std::vector<double> emissions = first_emissions(counter, rooms);
-  const std::vector<double> anywhere(size(counter.n_states()), 1.0 / counter.n_states());
-  for (const LabelledRoom& room : rooms)
-    counter.rooms.push_back({room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, emissions});
-  std::vector<double> been = anywhere;
-  for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, moves_at_first, threads);
-  for (std::size_t r = 0; r < rooms.size(); ++r) counter.rooms[r].first = first_of(counter, rooms[r], been);
-  return counter;
-}
-
-namespace {
-
 /// Adds the probabilities of each count, whatever the mode.
 void add_counts(std::span<const double> beliefs, double weight, std::size_t modes, std::span<double> counts) {
   for (std::size_t state = 0; state < beliefs.size(); ++state) counts[state / modes] += weight * beliefs[state];
@@ -330,99 +208,7 @@ void add_counts(std::span<const double> beliefs, double weight, std::size_t mode
 constexpr double nobody_knows = std::numeric_limits<double>::quiet_NaN();
 constexpr double never_s = std::numeric_limits<double>::infinity();
 
-}  // namespace
-
-std::vector<double> log_likelihoods(const Counter& counter, std::span<const Stretch> stretches) {
-  std::vector<double> sums(counter.rooms.size(), 0.0);
-  for (const Stretch& stretch : stretches) {
-    const std::vector<Reading> readings = readings_of(stretch);
-    for (std::size_t r = 0; r < sums.size(); ++r)
-      sums[r] += forward(counter, counter.rooms[r], readings).log_likelihood;
-  }
-  return sums;
-}
-
-void weigh(Counter& counter, std::span<const double> log_likelihoods) {
-  const double most = *std::ranges::max_element(log_likelihoods);
-  double sum = 0.0;
-  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
-    RoomModel& room = counter.rooms[r];
-    room.weight = std::exp(counter.settings.weight_power * (log_likelihoods[r] - most));
-    sum += room.weight;
-  }
-  for (RoomModel& room : counter.rooms) room.weight /= sum;
-}
-
-std::vector<char> told_readings(const Stretch& stretch, double step_s, Pass pass) {
-  const std::vector<Reading> readings = readings_of(stretch);
-  std::vector<char> told(readings.size(), 0);
-  double unknown_s = never_s;
-  const auto look = [&](std::size_t i) {
-    unknown_s = readings[i].known > 0 ? 0.0 : unknown_s + step_s;
-    if (unknown_s <= longest_guess_s) told[i] = 1;
-  };
-  for (std::size_t i = 0; i < readings.size(); ++i) look(i);
-  unknown_s = never_s;
-  for (std::size_t i = readings.size(); pass == Pass::smoothed && i-- > 0;) look(i);
-  return told;
-}
-
-bool Estimates::is_told(std::size_t reading) const { return !std::isnan(probabilities[reading * size(n_counts)]); }
-
-int Estimates::quantile(std::size_t reading, double share) const {
-  double reached = 0.0;
-  for (int n = 0; n < n_counts - 1; ++n) {
-    reached += probabilities[reading * size(n_counts) + size(n)];
-    if (reached >= share - 1e-9) return n;
-  }
-  return n_counts - 1;
-}
-
-Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
-  const std::vector<Reading> readings = readings_of(stretch);
-  const std::size_t modes = size(counter.settings.modes);
-  Estimates mixed{counter.n_counts, std::vector<double>(readings.size() * size(counter.n_counts), 0.0)};
-  for (const RoomModel& room : counter.rooms) {
-    if (!(room.weight > 0.0)) continue;
-    std::vector<double> own = forward(counter, room, readings).beliefs;
-    if (pass == Pass::smoothed) smooth(counter, readings, own);
-    add_counts(own, room.weight, modes, mixed.probabilities);
-  }
-  const std::vector<char> told = told_readings(stretch, counter.settings.step_s, pass);
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    if (told[i] == 0)
-      std::ranges::fill(std::span(mixed.probabilities).subspan(i * size(mixed.n_counts), size(mixed.n_counts)),
-                        nobody_knows);
-  }
-  return mixed;
-}
-
-LiveCount::LiveCount(const Counter& counter) : counter_(&counter), unknown_s_(never_s) {}
-
-std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
-  const Counter& counter = *counter_;
-  if (bits.size() != size(counter.n_sensors)) {
-    throw Error(ErrorCode::usage, "expected " + std::to_string(counter.n_sensors) + " bits, one a sensor, got " +
-                                      std::to_string(bits.size()));
-  }
-  const std::size_t n = size(counter.n_states());
-  const Reading reading = readings_of({counter.n_sensors, {bits.begin(), bits.end()}}).front();
-  std::vector<double> counts(size(counter.n_counts), 0.0), next(counter.rooms.size() * n);
-  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
-    const std::span<const double> before = belief_.empty() ? std::span<double>() : std::span(belief_).subspan(r * n, n);
-    const std::span<double> now = std::span(next).subspan(r * n, n);
-    static_cast<void>(step(counter, counter.rooms[r], before, {0, n}, reading, now));
-    add_counts(now, counter.rooms[r].weight, size(counter.settings.modes), counts);
-  }
-  belief_ = std::move(next);
-  unknown_s_ = reading.known > 0 ? 0.0 : unknown_s_ + counter.settings.step_s;
-  if (unknown_s_ > longest_guess_s) std::ranges::fill(counts, nobody_knows);
-  return counts;
-}
-
 // A counter as JSON.
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 1;
@@ -532,6 +318,208 @@ Counter counter_from(const Json& json) {
 }
 
 }  // namespace
+
+void divide_rows(std::span<double> table, std::size_t n_columns) {
+  for (std::size_t row = 0; row < table.size(); row += n_columns) normalize(table.subspan(row, n_columns));
+}
+
+std::vector<Reading> readings_of(const Stretch& stretch) {
+  std::vector<Reading> readings(stretch.n_readings());
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    for (std::size_t k = 0; k < size(stretch.n_sensors); ++k) {
+      const std::uint8_t bit = stretch.motion[i * size(stretch.n_sensors) + k];
+      readings[i].known += bit == unknown_bit ? 0 : 1;
+      readings[i].active += bit == 1 ? 1 : 0;
+    }
+    if (!stretch.people.empty()) readings[i].people = stretch.people[i];
+  }
+  return readings;
+}
+
+StateRange states_of(const Counter& counter, const Reading& reading) {
+  if (reading.people == unknown_count) return {0, size(counter.n_states())};
+  const std::size_t count = size(std::min(reading.people, counter.n_counts - 1)), modes = size(counter.settings.modes);
+  return {count * modes, (count + 1) * modes};
+}
+
+void likelihood(const Counter& counter, std::span<const double> emissions, const Reading& reading,
+                std::vector<double>& out) {
+  const std::size_t n_symbols = size(counter.n_symbols());
+  const StateRange range = states_of(counter, reading);
+  out.assign(size(counter.n_states()), 0.0);
+  for (std::size_t state = range.begin; state < range.end; ++state) {
+    const std::span<const double> own = emissions.subspan(state * n_symbols, n_symbols);
+    if (reading.known == counter.n_sensors) {
+      out[state] = own[size(reading.active)];
+      continue;
+    }
+    const int unknown = counter.n_sensors - reading.known;
+    for (int all = reading.active; all <= reading.active + unknown; ++all) {
+      out[state] += own[size(all)] * choose(all, reading.active) *
+                    choose(counter.n_sensors - all, reading.known - reading.active) /
+                    choose(counter.n_sensors, reading.known);
+    }
+  }
+}
+
+double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
+            const Reading& reading, std::span<double> after) {
+  const std::size_t n = size(counter.n_states());
+  const StateRange range = states_of(counter, reading);
+  std::vector<double> seen;
+  likelihood(counter, room.emissions, reading, seen);
+  std::ranges::fill(after, 0.0);
+  if (before.empty()) std::ranges::copy(room.first, after.begin());
+  for (std::size_t from = range_before.begin; from < range_before.end && !before.empty(); ++from) {
+    for (std::size_t to = range.begin; to < range.end; ++to) after[to] += before[from] * counter.moves[from * n + to];
+  }
+  for (std::size_t state = 0; state < n; ++state) after[state] *= seen[state];
+  return normalize(after);
+}
+
+ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings) {
+  const std::size_t n = size(counter.n_states());
+  ForwardPass pass{std::vector<double>(readings.size() * n), 0.0};
+  std::span<const double> before;
+  StateRange range;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const std::span<double> now(pass.beliefs.data() + i * n, n);
+    pass.log_likelihood += std::log(step(counter, room, before, range, readings[i], now));
+    before = now;
+    range = states_of(counter, readings[i]);
+  }
+  return pass;
+}
+
+void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
+            std::span<double> moved) {
+  const std::size_t n = size(counter.n_states());
+  constexpr double most_ratio = 1e290;  // finite, however sure the past was of what the future refutes
+  std::vector<double> ratio(n);         // of what is believed of the next reading to what was expected of it
+  for (std::size_t i = readings.size() < 2 ? 0 : readings.size() - 1; i-- > 0;) {
+    const std::span<double> now(beliefs.data() + i * n, n), next(beliefs.data() + (i + 1) * n, n);
+    const StateRange range = states_of(counter, readings[i]), after = states_of(counter, readings[i + 1]);
+    std::ranges::fill(ratio, 0.0);
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      for (std::size_t to = after.begin; to < after.end; ++to) ratio[to] += now[from] * counter.moves[from * n + to];
+    }
+    for (std::size_t to = after.begin; to < after.end; ++to)
+      ratio[to] = next[to] > 0.0 ? std::min(next[to] / ratio[to], most_ratio) : 0.0;
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      double later = 0.0;
+      for (std::size_t to = after.begin; to < after.end; ++to) {
+        const double factor = counter.moves[from * n + to] * ratio[to];
+        later += factor;
+        if (!moved.empty()) moved[from * n + to] += now[from] * factor;
+      }
+      now[from] *= later;
+    }
+    normalize(now);
+  }
+}
+
+Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads) {
+  require_alike(rooms);
+  Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}, {}};
+  const std::vector<double> moves_at_first = first_moves(counter, rooms);
+  counter.moves = moves_at_first;
+  const std::vector<double> emissions = first_emissions(counter, rooms);
+  const std::vector<double> anywhere(size(counter.n_states()), 1.0 / counter.n_states());
+  for (const LabelledRoom& room : rooms)
+    counter.rooms.push_back({room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, emissions});
+  std::vector<double> been = anywhere;
+  for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, moves_at_first, threads);
+  for (std::size_t r = 0; r < rooms.size(); ++r) counter.rooms[r].first = first_of(counter, rooms[r], been);
+  return counter;
+}
+
+std::vector<double> log_likelihoods(const Counter& counter, std::span<const Stretch> stretches) {
+  std::vector<double> sums(counter.rooms.size(), 0.0);
+  for (const Stretch& stretch : stretches) {
+    const std::vector<Reading> readings = readings_of(stretch);
+    for (std::size_t r = 0; r < sums.size(); ++r)
+      sums[r] += forward(counter, counter.rooms[r], readings).log_likelihood;
+  }
+  return sums;
+}
+
+void weigh(Counter& counter, std::span<const double> log_likelihoods) {
+  const double most = *std::ranges::max_element(log_likelihoods);
+  double sum = 0.0;
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    RoomModel& room = counter.rooms[r];
+    room.weight = std::exp(counter.settings.weight_power * (log_likelihoods[r] - most));
+    sum += room.weight;
+  }
+  for (RoomModel& room : counter.rooms) room.weight /= sum;
+}
+
+std::vector<char> told_readings(const Stretch& stretch, double step_s, Pass pass) {
+  const std::vector<Reading> readings = readings_of(stretch);
+  std::vector<char> told(readings.size(), 0);
+  double unknown_s = never_s;
+  const auto look = [&](std::size_t i) {
+    unknown_s = readings[i].known > 0 ? 0.0 : unknown_s + step_s;
+    if (unknown_s <= longest_guess_s) told[i] = 1;
+  };
+  for (std::size_t i = 0; i < readings.size(); ++i) look(i);
+  unknown_s = never_s;
+  for (std::size_t i = readings.size(); pass == Pass::smoothed && i-- > 0;) look(i);
+  return told;
+}
+
+bool Estimates::is_told(std::size_t reading) const { return !std::isnan(probabilities[reading * size(n_counts)]); }
+
+int Estimates::quantile(std::size_t reading, double share) const {
+  double reached = 0.0;
+  for (int n = 0; n < n_counts - 1; ++n) {
+    reached += probabilities[reading * size(n_counts) + size(n)];
+    if (reached >= share - 1e-9) return n;
+  }
+  return n_counts - 1;
+}
+
+Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
+  const std::vector<Reading> readings = readings_of(stretch);
+  const std::size_t modes = size(counter.settings.modes);
+  Estimates mixed{counter.n_counts, std::vector<double>(readings.size() * size(counter.n_counts), 0.0)};
+  for (const RoomModel& room : counter.rooms) {
+    if (!(room.weight > 0.0)) continue;
+    std::vector<double> own = forward(counter, room, readings).beliefs;
+    if (pass == Pass::smoothed) smooth(counter, readings, own);
+    add_counts(own, room.weight, modes, mixed.probabilities);
+  }
+  const std::vector<char> told = told_readings(stretch, counter.settings.step_s, pass);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i] == 0)
+      std::ranges::fill(std::span(mixed.probabilities).subspan(i * size(mixed.n_counts), size(mixed.n_counts)),
+                        nobody_knows);
+  }
+  return mixed;
+}
+
+LiveCount::LiveCount(const Counter& counter) : counter_(&counter), unknown_s_(never_s) {}
+
+std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
+  const Counter& counter = *counter_;
+  if (bits.size() != size(counter.n_sensors)) {
+    throw Error(ErrorCode::usage, "expected " + std::to_string(counter.n_sensors) + " bits, one a sensor, got " +
+                                      std::to_string(bits.size()));
+  }
+  const std::size_t n = size(counter.n_states());
+  const Reading reading = readings_of({counter.n_sensors, {bits.begin(), bits.end()}}).front();
+  std::vector<double> counts(size(counter.n_counts), 0.0), next(counter.rooms.size() * n);
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    const std::span<const double> before = belief_.empty() ? std::span<double>() : std::span(belief_).subspan(r * n, n);
+    const std::span<double> now = std::span(next).subspan(r * n, n);
+    static_cast<void>(step(counter, counter.rooms[r], before, {0, n}, reading, now));
+    add_counts(now, counter.rooms[r].weight, size(counter.settings.modes), counts);
+  }
+  belief_ = std::move(next);
+  unknown_s_ = reading.known > 0 ? 0.0 : unknown_s_ + counter.settings.step_s;
+  if (unknown_s_ > longest_guess_s) std::ranges::fill(counts, nobody_knows);
+  return counts;
+}
 
 void write_counter(const std::filesystem::path& file, const Counter& counter) {
   Json rooms = Json::array();

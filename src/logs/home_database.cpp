@@ -185,12 +185,12 @@ void HomeDatabase::read_stops() {
   std::ranges::reverse(stops_us_);
 }
 
-std::optional<HomeDatabase::Row> HomeDatabase::next_row() {
+std::optional<HomeDatabase::StateChange> HomeDatabase::next_row() {
   if (!rows_ || !step(rows_)) {
     rows_.reset();  // else SQLite would begin anew
     return std::nullopt;
   }
-  Row row{0, text_of(rows_.get(), 2), text_of(rows_.get(), 3)};
+  StateChange row{0, text_of(rows_.get(), 2), text_of(rows_.get(), 3)};
   if (sqlite3_column_type(rows_.get(), 0) != SQLITE_NULL) {
     row.us = std::llround(sqlite3_column_double(rows_.get(), 0) * us_per_s);
   } else if (const auto us = moment_of(text_of(rows_.get(), 1))) {

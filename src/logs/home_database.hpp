@@ -1,4 +1,4 @@
-// Home Assistant's database, as rows of a table of time, sensor and state. Private to io.
+// Home Assistant's database, as rows of a table of time, sensor and state.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ class HomeDatabase {
     void operator()(sqlite3_stmt* statement) const noexcept;
   };
   using Statement = std::unique_ptr<sqlite3_stmt, Close>;
-  struct Row {
+  struct StateChange {
     std::int64_t us = 0;
     std::string entity, state;
   };
@@ -52,7 +52,7 @@ class HomeDatabase {
   [[nodiscard]] std::string query(std::span<const std::string> entities) const;
   void read_stops();
   [[nodiscard]] std::optional<std::int64_t> last_before(std::int64_t us, const std::string& text) const;
-  [[nodiscard]] std::optional<Row> next_row();
+  [[nodiscard]] std::optional<StateChange> next_row();
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;

@@ -1,5 +1,3 @@
-#include "logs/log_facts.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,16 +10,15 @@
 #include "logs/times.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/log.hpp"
-#include "pirsim/log_facts.hpp"
 
-// How much alike two sensors of a log are. Private to io.
-
-namespace pirsim::io {
-
-/// Sets the pairs of facts and the length of their windows.
-void add_pairs(const Log& log, LogFacts& facts);
-
+namespace pirsim {
 namespace {
+
+using io::each_stretch, io::LogRun, io::rounded_down, io::us_per_day, io::us_per_ms, io::us_per_s;
+
+double in_seconds(std::int64_t us) { return static_cast<double>(us) / us_per_s; }
+
+// ----------------------------------------------------------------------------------------- how much alike sensors are
 
 /// Windows of one sensor, a bit each.
 struct Bits {
@@ -93,20 +90,10 @@ void set_lead(const std::vector<std::int64_t>& a, const std::vector<std::int64_t
       (static_cast<double>(n_first) + 0.5 * static_cast<double>(n_same)) / static_cast<double>(after.size());
   const auto middle = after.begin() + static_cast<std::ptrdiff_t>(after.size() / 2);
   std::nth_element(after.begin(), middle, after.end());
-  pair.b_after_a_s = static_cast<double>(*middle) / us_per_s;
+  pair.b_after_a_s = in_seconds(*middle);
 }
 
-}  // namespace
-
-}  // namespace pirsim::io
-
-bool pirsim::LogPair::has_leader() const noexcept {
-  constexpr double two_sided_99 = 2.576;
-  return b_after_a_s && std::abs(a_first_share - 0.5) > 0.5 * two_sided_99 / std::sqrt(static_cast<double>(n_together));
-}
-
-namespace pirsim::io {
-
+/// Sets the pairs of facts and the length of their windows.
 void add_pairs(const Log& log, LogFacts& facts) {
   constexpr std::size_t most_sensors = 100;
   constexpr double usual_window_s = 10.0;  // assumed: holds of seconds fall into one window, two visits don't
@@ -139,15 +126,6 @@ void add_pairs(const Log& log, LogFacts& facts) {
   }
   std::ranges::stable_sort(facts.pairs, std::greater{}, [](const LogPair& pair) { return pair.phi.value_or(-2.0); });
 }
-
-}  // namespace pirsim::io
-
-namespace pirsim {
-namespace {
-
-using io::each_stretch, io::LogRun, io::us_per_day, io::us_per_ms, io::us_per_s;
-
-double in_seconds(std::int64_t us) { return static_cast<double>(us) / us_per_s; }
 
 // ------------------------------------------------------------------------------------------------------------- lengths
 
@@ -196,15 +174,15 @@ std::optional<double> hold_told_by(const LogLengths& pulses) {
 // ---------------------------------------------------------------------------------------------------------------- time
 
 /// Seconds of each hour of the day.
-struct Day {
+struct HoursOfDay {
   std::array<double, 24> known{}, motion{};
 };
 
-void add_to_day(const Log& log, const LogRun& run, Day& day) {
+void add_to_day(const Log& log, const LogRun& run, HoursOfDay& day) {
   constexpr std::int64_t us_per_hour = 3600 * us_per_s;
   for (std::int64_t from = run.from_us; from < run.to_us;) {
     const std::int64_t local = log.moment(from).local_us();
-    const std::int64_t of_day = ((local % us_per_day) + us_per_day) % us_per_day;
+    const std::int64_t of_day = local - rounded_down(local, us_per_day);
     const std::int64_t to = std::min(run.to_us, from + us_per_hour - of_day % us_per_hour);
     const auto hour = static_cast<std::size_t>(of_day / us_per_hour);
     day.known[hour] += in_seconds(to - from);
@@ -218,7 +196,7 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
   facts.name = track.name;
   std::vector<LogRun> runs;
   each_stretch(log, track, [&](const LogRun& run) { runs.push_back(run); });
-  Day day;
+  HoursOfDay day;
   bool was_on = false, was_off = false;
   for (const LogRun& run : runs) {
     const double s = in_seconds(run.to_us - run.from_us);
@@ -243,14 +221,14 @@ LogSensorFacts sensor_facts(const Log& log, const LogTrack& track) {
 
 // ------------------------------------------------------------------------------------------------------ false triggers
 
-struct Stretch {
+struct TimeSpan {
   std::int64_t from_us, to_us;
 };
 
 /// When the count says that nobody is there, but not near to other counts, which may be late.
-std::vector<Stretch> empty_times(const Log& log) {
+std::vector<TimeSpan> empty_times(const Log& log) {
   constexpr std::int64_t apart_us = 300 * us_per_s;  // assumed: a count every 30 s, people who linger, a sensor's hold
-  std::vector<Stretch> found;
+  std::vector<TimeSpan> found;
   if (!log.people) return found;
   each_stretch(log, *log.people, [&](const LogRun& run) {
     if (run.value == 0 && run.to_us - run.from_us > 2 * apart_us)
@@ -260,13 +238,13 @@ std::vector<Stretch> empty_times(const Log& log) {
 }
 
 /// What a sensor did in each of these stretches, which are in order of time.
-struct InStretch {
+struct InTimeSpan {
   std::size_t n_onsets = 0;
   double known_h = 0.0;
 };
 
-std::vector<InStretch> done_in(const Log& log, const LogTrack& track, const std::vector<Stretch>& stretches) {
-  std::vector<InStretch> done(stretches.size());
+std::vector<InTimeSpan> done_in(const Log& log, const LogTrack& track, const std::vector<TimeSpan>& stretches) {
+  std::vector<InTimeSpan> done(stretches.size());
   std::size_t first = 0;
   std::int32_t before = log_state::unknown;
   each_stretch(log, track, [&](const LogRun& run) {
@@ -285,9 +263,9 @@ std::vector<InStretch> done_in(const Log& log, const LogTrack& track, const std:
 }
 
 /// Midnight to five, of each day that the log has.
-std::vector<Stretch> nights_of(const Log& log) {
+std::vector<TimeSpan> nights_of(const Log& log) {
   constexpr std::int64_t night_us = 5 * 3600 * us_per_s;
-  std::vector<Stretch> nights;
+  std::vector<TimeSpan> nights;
   if (log.clock == LogClock::elapsed) return nights;
   const std::int64_t first_local = log.moment(log.begin_us).local_us();
   for (std::int64_t midnight = first_local - first_local % us_per_day;; midnight += us_per_day) {
@@ -298,11 +276,11 @@ std::vector<Stretch> nights_of(const Log& log) {
 }
 
 /// The third of all nights that are known in which motion begins least often; none of less than three.
-std::vector<Stretch> quiet_nights(const Log& log) {
-  const std::vector<Stretch> nights = nights_of(log);
-  std::vector<InStretch> done(nights.size());
+std::vector<TimeSpan> quiet_nights(const Log& log) {
+  const std::vector<TimeSpan> nights = nights_of(log);
+  std::vector<InTimeSpan> done(nights.size());
   for (const LogTrack& track : log.sensors) {
-    const std::vector<InStretch> more = done_in(log, track, nights);
+    const std::vector<InTimeSpan> more = done_in(log, track, nights);
     for (std::size_t i = 0; i < nights.size(); ++i) {
       done[i].n_onsets += more[i].n_onsets;
       done[i].known_h += more[i].known_h;
@@ -318,18 +296,18 @@ std::vector<Stretch> quiet_nights(const Log& log) {
   std::ranges::stable_sort(known, {}, [&](std::size_t i) { return done[i].n_onsets; });
   known.resize(known.size() / 3);
   std::ranges::sort(known);
-  std::vector<Stretch> chosen;
+  std::vector<TimeSpan> chosen;
   for (const std::size_t i : known) chosen.push_back(nights[i]);
   return chosen;
 }
 
 void add_false_triggers(const Log& log, LogFacts& facts) {
-  std::vector<Stretch> times = empty_times(log);
+  std::vector<TimeSpan> times = empty_times(log);
   const auto from = times.empty() ? LogFalseTriggers::From::nights : LogFalseTriggers::From::nobody;
   if (times.empty()) times = quiet_nights(log);
   for (std::size_t i = 0; i < log.sensors.size(); ++i) {
     LogFalseTriggers found{from, 0.0, 0};
-    for (const InStretch& done : done_in(log, log.sensors[i], times)) {
+    for (const InTimeSpan& done : done_in(log, log.sensors[i], times)) {
       found.hours += done.known_h;
       found.n += done.n_onsets;
     }
@@ -381,26 +359,9 @@ double longest_silence(const Log& log) {
   return in_seconds(longest);
 }
 
-}  // namespace
-
-LogFacts facts_of(const Log& log) {
-  LogFacts facts;
-  facts.interval_s = in_seconds(log.interval_us);
-  facts.resolution_s = resolution_of(log);
-  for (const LogTrack& track : log.sensors) facts.sensors.push_back(sensor_facts(log, track));
-  add_false_triggers(log, facts);
-  add_gaps(log, facts);
-  io::add_pairs(log, facts);
-  if (!log.has_readings()) facts.longest_silence_s = longest_silence(log);
-  return facts;
-}
-
 // Windows of a log.
 
-using io::us_per_day, io::us_per_ms, io::us_per_s;
-namespace {
-
-std::int64_t divided_down(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+std::int64_t divided_down(std::int64_t a, std::int64_t b) { return rounded_down(a, b) / b; }
 std::int64_t divided_up(std::int64_t a, std::int64_t b) { return -divided_down(-a, b); }
 
 std::int64_t microseconds(double window_s) {
@@ -414,12 +375,27 @@ std::int64_t microseconds(double window_s) {
 /// The first day's midnight, or second 0.
 std::int64_t midnight_of(const Log& log) {
   const LogMoment begin = log.moment(log.begin_us);
-  return log.clock == LogClock::elapsed
-             ? 0
-             : us_per_day * divided_down(begin.local_us(), us_per_day) - us_per_s * begin.offset_s;
+  return log.clock == LogClock::elapsed ? 0 : rounded_down(begin.local_us(), us_per_day) - us_per_s * begin.offset_s;
 }
 
 }  // namespace
+
+bool LogPair::has_leader() const noexcept {
+  constexpr double two_sided_99 = 2.576;
+  return b_after_a_s && std::abs(a_first_share - 0.5) > 0.5 * two_sided_99 / std::sqrt(static_cast<double>(n_together));
+}
+
+LogFacts facts_of(const Log& log) {
+  LogFacts facts;
+  facts.interval_s = in_seconds(log.interval_us);
+  facts.resolution_s = resolution_of(log);
+  for (const LogTrack& track : log.sensors) facts.sensors.push_back(sensor_facts(log, track));
+  add_false_triggers(log, facts);
+  add_gaps(log, facts);
+  add_pairs(log, facts);
+  if (!log.has_readings()) facts.longest_silence_s = longest_silence(log);
+  return facts;
+}
 
 /// From one change to the next.
 struct LogWindows::Run {

@@ -84,6 +84,63 @@ std::string state_of(const nlohmann::json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
+constexpr std::uint64_t most_faults = 1000;
+
+bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
+
+/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in
+/// them.
+bool is_comment(std::string_view line) {
+  if (!line.starts_with('#')) return false;
+  constexpr std::string_view separators = ",;\t";
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find_first_of(separators), line.size());
+    const auto stamp = parse_stamp(line.substr(0, end), LogMap::Dates::found);
+    if (stamp && stamp->kind != Stamp::Kind::number) return false;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return true;
+}
+
+/// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
+bool is_before_table(std::string_view line) {
+  return line.starts_with("sep=") || line.starts_with("Plot Title:") || line.starts_with("\"Plot Title:");
+}
+
+/// What a log isn't, and what to do; empty if it may be a table.
+std::string_view what_is_no_table(std::string_view first) {
+  if (first.starts_with('<')) return "XML or a page: save the log as CSV";
+  if (first.starts_with('{')) return "JSON: save the log as CSV";
+  if (!first.starts_with('[')) return {};
+  const std::size_t inner = first.find_first_not_of(" \t", 1);
+  if (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos)
+    return "JSON: save the log as CSV";
+  return "lines of a text: those of openHAB, Zigbee2MQTT and ESPHome are read";
+}
+
+/// Dashes below the names of columns, as UCI 271 has them.
+bool is_ruler(std::string_view line) {
+  return line.starts_with("---") && line.find_first_not_of("- \t") == std::string_view::npos;
+}
+
+/// Columns that stand below each other, with a tab or two spaces between them, as fields with one tab.
+std::string with_tabs(std::string_view line) {
+  std::string result;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = std::min(line.find_first_not_of(" \t", at), line.size());
+    const std::string_view gap = line.substr(at, end - at);
+    if (!gap.empty() && !result.empty()) result += gap == " " ? ' ' : '\t';
+    const std::size_t next = std::min(line.find_first_of(" \t", end), line.size());
+    result += line.substr(end, next - end);
+    at = next;
+  }
+  while (result.ends_with('\t')) result.pop_back();
+  return result;
+}
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
 }  // namespace
 
 std::optional<TextLines::Writer> TextLines::writer_of(std::span<const HeadLine> head) {
@@ -117,34 +174,35 @@ void TextLines::read(const HeadLine& line, std::vector<HeadLine>& rows, LogRemar
   }
 }
 
-namespace {
+TextLines::Changes TextLines::changes_in(std::string_view text, int line, LogRemarks& remarks) {
+  switch (writer_) {
+    case Writer::openhab:
+      return of_openhab(text);
+    case Writer::zigbee2mqtt:
+      return of_zigbee2mqtt(text);
+    case Writer::esphome:
+      break;
+  }
+  return of_esphome(text, line, remarks);
+}
 
 /// "2024-01-31 18:02:11.123 [INFO ] [openhab.event.ItemStateChangedEvent   ] - Item 'Hall' changed from OFF to ON", in
 /// old versions without Item and quotes, of groups with "through" and a member behind it, in new ones with a source.
-std::optional<std::array<std::string, 3>> openhab_change(std::string_view text) {
+TextLines::Changes TextLines::of_openhab(std::string_view text) {
   constexpr std::string_view message = "] - ", changed = " changed from ", to = " to ";
   const std::size_t at = text.find(message), from = text.find(changed);
-  if (at == std::string_view::npos || from == std::string_view::npos || from < at + message.size()) return std::nullopt;
+  if (at == std::string_view::npos || from == std::string_view::npos || from < at + message.size()) return {};
   const std::string_view before = text.substr(0, at);
-  if (!has(before, "StateChangedEvent")) return std::nullopt;
+  if (!has(before, "StateChangedEvent")) return {};
   std::string_view name = text.substr(at + message.size(), from - at - message.size());
   if (name.starts_with("Item '") && name.ends_with('\'')) name = name.substr(6, name.size() - 7);
   std::string_view state = text.substr(from + changed.size());
   for (const std::string_view tail : {" through ", " (source: "}) state = state.substr(0, state.rfind(tail));
   const std::size_t last = state.rfind(to);
-  if (last == std::string_view::npos) return std::nullopt;
+  if (last == std::string_view::npos) return {};
   state.remove_prefix(last + to.size());
   if (state == "UNDEF" || state == "NULL") state = "unknown";
-  return std::array{std::string(before.substr(0, before.find(" ["))), std::string(name), std::string(state)};
-}
-
-}  // namespace
-
-TextLines::Changes TextLines::changes_in(std::string_view text, int line, LogRemarks& remarks) {
-  if (writer_ == Writer::zigbee2mqtt) return of_zigbee2mqtt(text);
-  if (writer_ == Writer::esphome) return of_esphome(text, line, remarks);
-  const auto change = openhab_change(text);
-  return change ? Changes{{(*change)[0], (*change)[1], (*change)[2]}} : Changes{};
+  return {{std::string(before.substr(0, before.find(" ["))), std::string(name), std::string(state)}};
 }
 
 /// "... MQTT publish: topic 'zigbee2mqtt/hall', payload '{"occupancy":true}'": of the device's properties those that
@@ -204,81 +262,15 @@ std::string TextLines::since_first_midnight(std::int64_t us, int line, LogRemark
   if (back_us > a_jitter_us) {
     days_us_ += us_per_day;
     if (back_us < an_hour_twice_us) {
-      remarks.add(
-          "day turns",
-          [&] {
-            return Where{file_, line, 0};
-          },
-          [&] {
-            return "the times step back by " + fixed(static_cast<double>(back_us) / (60.0 * us_per_s), 0) +
-                   " min: it counts as the next day, unless clocks were put back here";
-          });
+      remarks.add("day turns", {file_, line, 0}, [&] {
+        return "the times step back by " + fixed(static_cast<double>(back_us) / (60.0 * us_per_s), 0) +
+               " min: it counts as the next day, unless clocks were put back here";
+      });
     }
   }
   last_us_ = us;
   return fixed(static_cast<double>(days_us_ + us) / us_per_s, 6);
 }
-
-namespace {
-
-constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
-constexpr std::uint64_t most_faults = 1000;
-
-bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
-
-/// What stands above the table, as loggers and spreadsheets write it: lines that begin with #, but have no time in
-/// them.
-bool is_comment(std::string_view line) {
-  if (!line.starts_with('#')) return false;
-  constexpr std::string_view separators = ",;\t";
-  while (!line.empty()) {
-    const std::size_t end = std::min(line.find_first_of(separators), line.size());
-    const auto stamp = parse_stamp(line.substr(0, end), LogMap::Dates::found);
-    if (stamp && stamp->kind != Stamp::Kind::number) return false;
-    line.remove_prefix(std::min(end + 1, line.size()));
-  }
-  return true;
-}
-
-/// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
-bool is_before_table(std::string_view line) {
-  return line.starts_with("sep=") || line.starts_with("Plot Title:") || line.starts_with("\"Plot Title:");
-}
-
-/// What a log isn't, and what to do; empty if it may be a table.
-std::string_view what_is_no_table(std::string_view first) {
-  if (first.starts_with('<')) return "XML or a page: save the log as CSV";
-  if (first.starts_with('{')) return "JSON: save the log as CSV";
-  if (!first.starts_with('[')) return {};
-  const std::size_t inner = first.find_first_not_of(" \t", 1);
-  if (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos)
-    return "JSON: save the log as CSV";
-  return "lines of a text: those of openHAB, Zigbee2MQTT and ESPHome are read";
-}
-
-/// Dashes below the names of columns, as UCI 271 has them.
-bool is_ruler(std::string_view line) {
-  return line.starts_with("---") && line.find_first_not_of("- \t") == std::string_view::npos;
-}
-
-/// Columns that stand below each other, with a tab or two spaces between them, as fields with one tab.
-std::string with_tabs(std::string_view line) {
-  std::string result;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t end = std::min(line.find_first_not_of(" \t", at), line.size());
-    const std::string_view gap = line.substr(at, end - at);
-    if (!gap.empty() && !result.empty()) result += gap == " " ? ' ' : '\t';
-    const std::size_t next = std::min(line.find_first_of(" \t", end), line.size());
-    result += line.substr(end, next - end);
-    at = next;
-  }
-  while (result.ends_with('\t')) result.pop_back();
-  return result;
-}
-
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-
-}  // namespace
 
 LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
     : path_(path.string()), reading_(reading), observer_(observer), timer_({}, nullptr, 0.0) {
@@ -349,8 +341,7 @@ void LogFile::read_head() {
 /// Until it tells something: in a program's log what is looked for may come late.
 void LogFile::read_text_head(TextLines::Writer writer) {
   text_.emplace(writer, path_);
-  std::vector<HeadLine> rows{{std::string(TextLines::header), 0}};
-  rows.front().line = head_.front().line;
+  std::vector<HeadLine> rows{{std::string(HomeDatabase::header), head_.front().line}};
   for (const HeadLine& line : head_) text_->read(line, rows, reading_.remarks);
   while (rows.size() == 1) {
     const auto line = next_line();
@@ -435,27 +426,17 @@ void LogFile::refuse_head() {
 
 template <typename Message>
 void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
-  reading_.faults.add(
-      kind,
-      [&] {  // counted in the line as it stands, where fields are parts of it
-        int at = 1;
-        for (std::size_t i = 0; i < std::min(column, fields_.size()) && shape_.separator != ' ' && source().empty();
-             ++i)
-          at += static_cast<int>(fields_[i].size()) + 1;
-        return Where{path_, line, at};
-      },
-      message);
+  const bool are_parts = shape_.separator != ' ' && source().empty();  // of the line as it stands
+  int at = 1;
+  for (std::size_t i = 0; i < std::min(column, fields_.size()) && are_parts; ++i)
+    at += static_cast<int>(fields_[i].size()) + 1;
+  reading_.faults.add(kind, {path_, line, at}, message);
   if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
 }
 
 template <typename Message>
 void LogFile::remark(std::string_view kind, int line, Message message) {
-  reading_.remarks.add(
-      kind,
-      [&] {
-        return Where{path_, line, 0};
-      },
-      message);
+  reading_.remarks.add(kind, {path_, line, 0}, message);
 }
 
 void LogFile::read() {
@@ -660,10 +641,8 @@ EventTracks::Track* LogFile::track_of(std::string_view name, int line) {
 }
 
 EventTracks::Track* LogFile::track_of_row(int line) {
-  std::string_view& name = fields_[shape_.sensor];
-  while (name.starts_with(' ')) name.remove_prefix(1);
-  while (name.ends_with(' ')) name.remove_suffix(1);
-  return track_of(name, line);
+  fields_[shape_.sensor] = trimmed(fields_[shape_.sensor]);
+  return track_of(fields_[shape_.sensor], line);
 }
 
 void LogFile::take_interval(std::int64_t us, int line) {

@@ -1,6 +1,7 @@
-// What is odd or wrong in a log, a kind once. Private to io.
+// What is odd or wrong in a log, a kind once.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,22 +23,20 @@ namespace pirsim::io {
 /// Of one severity. Logs have the same oddity a million times: the first is told, with how many more there are.
 class LogRemarks {
  public:
-  /// `kind` is what they have in common; message() and where() are asked for the first one alone.
-  template <typename GiveWhere, typename GiveMessage>
-  void add(std::string_view kind, GiveWhere where, GiveMessage message) {
+  /// `kind` is what they have in common; message() is asked for the first one alone.
+  template <typename GiveMessage>
+  void add(std::string_view kind, const Where& where, GiveMessage message) {
     ++n_;
-    for (Kind& known : kinds_) {
-      if (known.name == kind) {
-        ++known.n;
-        return;
-      }
-    }
-    kinds_.push_back({std::string(kind), where(), message(), 1});
+    const auto known = std::ranges::find(kinds_, kind, &Oddity::name);
+    if (known == kinds_.end())
+      kinds_.push_back({std::string(kind), where, message(), 1});
+    else
+      ++known->n;
   }
   [[nodiscard]] std::uint64_t count() const noexcept { return n_; }
   [[nodiscard]] std::vector<Issue> issues(Severity severity) const {
     std::vector<Issue> issues;
-    for (const Kind& kind : kinds_) {
+    for (const Oddity& kind : kinds_) {
       const std::string more = kind.n == 1 ? "" : "; " + std::to_string(kind.n - 1) + " more like this";
       issues.push_back({severity, kind.where, kind.message + more});
     }
@@ -45,17 +44,17 @@ class LogRemarks {
   }
 
  private:
-  struct Kind {
+  struct Oddity {
     std::string name;
     Where where;
     std::string message;
     std::uint64_t n;
   };
-  std::vector<Kind> kinds_;
+  std::vector<Oddity> kinds_;
   std::uint64_t n_ = 0;
 };
 
-// Lines that programs write for people, as rows of a table of time, sensor and state. Private to io.
+// Lines that programs write for people, as rows of a table of time, sensor and state.
 
 class TextLines {
  public:
@@ -66,9 +65,9 @@ class TextLines {
   TextLines(Writer writer, std::string file) : writer_(writer), file_(std::move(file)) {}
 
   [[nodiscard]] std::string_view name() const;
-  /// Adds the changes that a line tells to `rows`, each a line of a table of tabs with the columns of `header`.
+  /// Adds the changes that a line tells to `rows`, each a line of a table of tabs with the columns of
+  /// HomeDatabase::header.
   void read(const HeadLine& line, std::vector<HeadLine>& rows, LogRemarks& remarks);
-  static constexpr std::string_view header = "time\tsensor\tstate";
   /// Lines that tell of something else.
   [[nodiscard]] std::uint64_t n_other() const noexcept { return n_other_; }
 
@@ -79,6 +78,7 @@ class TextLines {
   };
   using Changes = std::vector<Change>;
   [[nodiscard]] Changes changes_in(std::string_view text, int line, LogRemarks& remarks);
+  [[nodiscard]] static Changes of_openhab(std::string_view text);
   [[nodiscard]] Changes of_zigbee2mqtt(std::string_view text);
   [[nodiscard]] Changes of_esphome(std::string_view text, int line, LogRemarks& remarks);
   [[nodiscard]] std::string since_first_midnight(std::int64_t us, int line, LogRemarks& remarks);
@@ -90,7 +90,7 @@ class TextLines {
   std::int64_t last_us_ = 0, days_us_ = 0;                     ///< of times of day
 };
 
-// One file of a log, row by row. Private to io.
+// One file of a log, row by row.
 
 /// What all files of a log share.
 struct LogReading {

@@ -28,10 +28,8 @@ constexpr std::array off_words{"off",          "false",    "no",     "clear",   
 constexpr std::array unknown_words{"", "unavailable", "unknown", "none", "null", "nan", "na", "n/a", "<na>", "-", "?"};
 
 std::string small(std::string_view text) {
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ')) text.remove_suffix(1);
-  std::string result(text);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  std::string result(trimmed(text));
+  std::ranges::transform(result, result.begin(), lower);
   return result;
 }
 
@@ -52,6 +50,65 @@ bool begins_with_one_of(const std::vector<std::string>& words, const auto& begin
   return std::ranges::any_of(words, [&](const std::string& word) {
     return std::ranges::any_of(beginnings, [&](std::string_view beginning) { return word.starts_with(beginning); });
   });
+}
+
+/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers. "UTC"
+/// beside a date names nothing.
+bool is_header(const std::vector<std::string>& fields) {
+  const auto is_value = [](const std::string& field) {
+    return parse_stamp(field, LogMap::Dates::found) || order_of_date(field);
+  };
+  const auto is_moment = [&](const std::string& field) { return is_value(field) && !is_number(field); };
+  const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
+  return std::ranges::none_of(fields, is_value) ||
+         (std::ranges::any_of(fields, is_time) && std::ranges::none_of(fields, is_moment));
+}
+
+std::vector<std::string> fields_of(const HeadLine& line, char separator, const std::string& file) {
+  std::vector<std::string_view> fields;
+  std::vector<std::string> unquoted;
+  if (!split_fields(line.text, separator, fields, unquoted))
+    throw Error(ErrorCode::input, {file, line.line, 1}, "a quote that isn't closed, or text behind one that is");
+  if (fields.size() > limits::log_columns) {
+    throw Error(ErrorCode::input, {file, line.line, 1}, "more than " + std::to_string(limits::log_columns) + " fields");
+  }
+  std::vector<std::string> result;
+  for (const std::string_view field : fields) result.emplace_back(trimmed(field));
+  return result;
+}
+
+void check_names(const HeadTable& table) {
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < table.n_columns(); ++i) {
+    const std::string& name = table.names[i];
+    const Where where{table.file, table.header_line, 1};
+    if (!known.insert(name).second) throw Error(ErrorCode::input, where, "column '" + name + "' appears twice");
+    if (const std::string found = invisible_character(name, Lines::many); !found.empty())
+      throw Error(ErrorCode::input, where, "the name of column " + std::to_string(i + 1) + " contains " + found);
+  }
+}
+
+constexpr std::array all_kinds{Stamp::Kind::absolute, Stamp::Kind::local, Stamp::Kind::date, Stamp::Kind::time_of_day,
+                               Stamp::Kind::number};
+
+using KindCounts = std::array<std::size_t, all_kinds.size()>;
+void count_kind(std::string_view text, LogMap::Dates order, KindCounts& n) {
+  const auto stamp = parse_stamp(text, order);
+  if (stamp) ++n[static_cast<std::size_t>(std::ranges::find(all_kinds, stamp->kind) - all_kinds.begin())];
+}
+std::optional<Stamp::Kind> kind_of_most(const KindCounts& n, std::size_t n_rows) {
+  const auto most = std::ranges::max_element(n);
+  if (*most == 0 || 2 * *most < n_rows) return std::nullopt;
+  return all_kinds[static_cast<std::size_t>(most - n.begin())];
+}
+
+bool is_moment(std::optional<Stamp::Kind> kind) { return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local; }
+
+std::string in_map(const TimeColumns& time, const std::vector<std::string>& names) {
+  if (time.more.empty()) return "time: " + quoted_yaml(names[time.first]);
+  std::vector<std::string> columns{quoted_yaml(names[time.first])};
+  for (const std::size_t column : time.more) columns.push_back(quoted_yaml(names[column]));
+  return "time: [" + joined(columns, ", ") + "]";
 }
 
 }  // namespace
@@ -95,7 +152,7 @@ std::vector<std::string> words_of_name(std::string_view name) {
   bool is_small = false;
   for (const char letter : name) {
     const bool is_capital = letter >= 'A' && letter <= 'Z';
-    const char c = is_capital ? static_cast<char>(letter - 'A' + 'a') : letter;
+    const char c = lower(letter);
     const bool is_part = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80U;
     if ((!is_part || (is_capital && is_small)) && !word.empty()) words.push_back(std::exchange(word, {}));
     if (is_part) word += c;
@@ -162,51 +219,6 @@ bool is_casas_motion(std::string_view name) {
   if (name.starts_with('A')) name.remove_prefix(1);  // one that sees a whole area
   return !name.empty() && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
 }
-
-namespace {
-
-/// A first line of names has no time and no value in it, or names the time beside sensors that are numbers. "UTC"
-/// beside a date names nothing.
-bool is_header(const std::vector<std::string>& fields) {
-  const auto is_value = [](const std::string& field) {
-    return parse_stamp(field, LogMap::Dates::found) || order_of_date(field);
-  };
-  const auto is_moment = [&](const std::string& field) { return is_value(field) && !is_number(field); };
-  const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
-  return std::ranges::none_of(fields, is_value) ||
-         (std::ranges::any_of(fields, is_time) && std::ranges::none_of(fields, is_moment));
-}
-
-std::vector<std::string> fields_of(const HeadLine& line, char separator, const std::string& file) {
-  std::vector<std::string_view> fields;
-  std::vector<std::string> unquoted;
-  if (!split_fields(line.text, separator, fields, unquoted))
-    throw Error(ErrorCode::input, {file, line.line, 1}, "a quote that isn't closed, or text behind one that is");
-  if (fields.size() > limits::log_columns) {
-    throw Error(ErrorCode::input, {file, line.line, 1}, "more than " + std::to_string(limits::log_columns) + " fields");
-  }
-  const auto trimmed = [](std::string_view field) {
-    while (field.starts_with(' ')) field.remove_prefix(1);
-    while (field.ends_with(' ')) field.remove_suffix(1);
-    return std::string(field);
-  };
-  std::vector<std::string> result;
-  std::ranges::transform(fields, std::back_inserter(result), trimmed);
-  return result;
-}
-
-void check_names(const HeadTable& table) {
-  std::set<std::string> known;
-  for (std::size_t i = 0; i < table.n_columns(); ++i) {
-    const std::string& name = table.names[i];
-    const Where where{table.file, table.header_line, 1};
-    if (!known.insert(name).second) throw Error(ErrorCode::input, where, "column '" + name + "' appears twice");
-    if (const std::string found = invisible_character(name, Lines::many); !found.empty())
-      throw Error(ErrorCode::input, where, "the name of column " + std::to_string(i + 1) + " contains " + found);
-  }
-}
-
-}  // namespace
 
 char separator_of(const std::string& line) {
   constexpr std::array separators{',', ';', '\t'};
@@ -278,33 +290,6 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
   for (auto& row : table.rows) row.resize(n);
   return table;
 }
-
-namespace {
-
-constexpr std::array all_kinds{Stamp::Kind::absolute, Stamp::Kind::local, Stamp::Kind::date, Stamp::Kind::time_of_day,
-                               Stamp::Kind::number};
-
-using KindCounts = std::array<std::size_t, all_kinds.size()>;
-void count_kind(std::string_view text, LogMap::Dates order, KindCounts& n) {
-  const auto stamp = parse_stamp(text, order);
-  if (stamp) ++n[static_cast<std::size_t>(std::ranges::find(all_kinds, stamp->kind) - all_kinds.begin())];
-}
-std::optional<Stamp::Kind> kind_of_most(const KindCounts& n, std::size_t n_rows) {
-  const auto most = std::ranges::max_element(n);
-  if (*most == 0 || 2 * *most < n_rows) return std::nullopt;
-  return all_kinds[static_cast<std::size_t>(most - n.begin())];
-}
-
-bool is_moment(std::optional<Stamp::Kind> kind) { return kind == Stamp::Kind::absolute || kind == Stamp::Kind::local; }
-
-std::string in_map(const TimeColumns& time, const std::vector<std::string>& names) {
-  if (time.more.empty()) return "time: " + quoted_yaml(names[time.first]);
-  std::vector<std::string> columns{quoted_yaml(names[time.first])};
-  for (const std::size_t column : time.more) columns.push_back(quoted_yaml(names[column]));
-  return "time: [" + joined(columns, ", ") + "]";
-}
-
-}  // namespace
 
 // Dates.
 

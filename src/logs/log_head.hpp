@@ -1,4 +1,4 @@
-// Words of logs: states, and what columns are called. Private to io.
+// Words of logs: states, and what columns are called.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ enum class NameSays { nothing, time, sensor, state, motion, count, presence, oth
 /// A text that YAML takes for nothing else.
 [[nodiscard]] std::string quoted_yaml(const std::string& text);
 
-// The first lines of a log as a table. Private to io.
+// The first lines of a log as a table.
 
 struct HeadLine {
   std::string text;
@@ -75,7 +75,7 @@ struct HeadTable {
 
 [[nodiscard]] bool is_number(const std::string& text);
 
-// Which columns of a log tell its time. Private to io.
+// Which columns of a log tell its time.
 
 class TimeFinder {
  public:

@@ -7,19 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "logs/log_facts.hpp"
 #include "logs/times.hpp"
 #include "model/core/text.hpp"
 #include "pirsim/log.hpp"
 #include "show/charts.hpp"
 
-// The days of a log as lines of a chart. Private to io.
-
 namespace pirsim::io {
-
-[[nodiscard]] DaysChart days_of(const Log& log);
-
 namespace {
+
+// ----------------------------------------------------------------------------------------------------- days as lines
 
 /// Local time cut into bins of equal length: those of a day that the chart shows, day after day.
 struct DayGrid {
@@ -28,8 +24,6 @@ struct DayGrid {
   std::int64_t bin_us = 0;
   std::size_t n_days = 1, n_bins = 1;
 };
-
-std::int64_t rounded_down(std::int64_t a, std::int64_t b) { return a - ((a % b) + b) % b; }
 
 DayGrid grid_of(const Log& log) {
   const std::int64_t begin = log.moment(log.begin_us).local_us(), end = log.moment(log.end_us).local_us();
@@ -132,8 +126,6 @@ std::vector<NamedLevels> lines_of(const Log& log, const DayGrid& grid) {
   return lines;
 }
 
-}  // namespace
-
 DaysChart days_of(const Log& log) {
   const DayGrid grid = grid_of(log);
   DaysChart chart;
@@ -153,7 +145,7 @@ DaysChart days_of(const Log& log) {
   return chart;
 }
 
-namespace {
+// ------------------------------------------------------------------------------------------------------------- words
 
 /// To a millisecond, at which the last event ends.
 std::string moment_in_words(const Log& log, std::int64_t us) {
@@ -206,25 +198,14 @@ std::string names_in_words(const Log& log, const std::vector<std::size_t>& senso
   return joined(names, ", ");
 }
 
-}  // namespace
-
-std::string form_in_words(const Log& log) {
-  const double interval_s = static_cast<double>(log.interval_us) / 1e6;
-  const std::string form = log.map.form == LogMap::Form::events      ? "events"
-                           : log.map.form == LogMap::Form::intervals ? "intervals"
-                           : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
-                                                : "rows of changes";
-  const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
-  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
-         people_in_words(log);
-}
-
+/// "readings every 30 s, 2 sensors, people: Room_Occupancy_Count, up to 3; 2017-12-22T10:49:11 to ..., 10129 rows"
 std::string log_in_words(const Log& log) {
   return form_in_words(log) + "; " + moment_in_words(log, log.begin_us) + " to " + moment_in_words(log, log.end_us) +
          " (" + time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) + "), " +
          counted(log.n_rows, "row");
 }
 
+/// A row a sensor: share of motion, pulses, pauses, false triggers.
 Table sensor_table(const Log& log, const LogFacts& facts) {
   Table table{{"sensor", "motion", "unknown", "pulses", "shortest", "hold", "median", "95 %", "shortest pause",
                "median pause", "false triggers"},
@@ -243,6 +224,7 @@ Table sensor_table(const Log& log, const LogFacts& facts) {
   return table;
 }
 
+/// A row a pair, of those most alike.
 Table pair_table(const LogFacts& facts, std::size_t most) {
   Table table{{"sensors", "alike (phi)", "who leads", "begin together"}, {}};
   for (std::size_t i = 0; i < std::min(most, facts.pairs.size()); ++i) {
@@ -269,6 +251,7 @@ Table gap_table(const Log& log, const LogFacts& facts) {
   return table;
 }
 
+/// What the tables' columns mean, and what isn't in them.
 std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
   std::vector<std::string> notes;
   notes.push_back(
@@ -304,8 +287,6 @@ std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
   return notes;
 }
 
-namespace {
-
 /// Columns one below the other; the first one's texts begin, those of the others end at the same place.
 std::string aligned(const Table& table) {
   std::vector<std::vector<std::string>> rows{table.headings};
@@ -326,23 +307,6 @@ std::string aligned(const Table& table) {
   }
   return text;
 }
-
-}  // namespace
-
-std::string to_text(const Log& log, const LogFacts& facts) {
-  constexpr std::size_t most_pairs = 5, most_gaps = 5;
-  std::string text = log_in_words(log) + "\n\n" + aligned(sensor_table(log, facts));
-  if (!facts.pairs.empty()) text += '\n' + aligned(pair_table(facts, most_pairs));
-  if (Table gaps = gap_table(log, facts); !gaps.rows.empty()) {
-    if (gaps.rows.size() > most_gaps) gaps.rows.resize(most_gaps);
-    text += '\n' + aligned(gaps);
-  }
-  text += '\n';
-  for (const std::string& note : log_notes(log, facts)) text += note + '\n';
-  return text;
-}
-
-namespace {
 
 /// Names of the sensors that have most motion: a chart has ten colours.
 std::vector<std::size_t> busiest(const LogFacts& facts, std::size_t most) {
@@ -407,6 +371,30 @@ ReportSection days(const Log& log) {
 }
 
 }  // namespace
+
+std::string form_in_words(const Log& log) {
+  const double interval_s = static_cast<double>(log.interval_us) / 1e6;
+  const std::string form = log.map.form == LogMap::Form::events      ? "events"
+                           : log.map.form == LogMap::Form::intervals ? "intervals"
+                           : log.has_readings() ? "readings every " + shortest_number(interval_s) + " s"
+                                                : "rows of changes";
+  const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
+  return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
+         people_in_words(log);
+}
+
+std::string to_text(const Log& log, const LogFacts& facts) {
+  constexpr std::size_t most_pairs = 5, most_gaps = 5;
+  std::string text = log_in_words(log) + "\n\n" + aligned(sensor_table(log, facts));
+  if (!facts.pairs.empty()) text += '\n' + aligned(pair_table(facts, most_pairs));
+  if (Table gaps = gap_table(log, facts); !gaps.rows.empty()) {
+    if (gaps.rows.size() > most_gaps) gaps.rows.resize(most_gaps);
+    text += '\n' + aligned(gaps);
+  }
+  text += '\n';
+  for (const std::string& note : log_notes(log, facts)) text += note + '\n';
+  return text;
+}
 
 Report log_report(const Log& log, const LogFacts& facts, const std::string& title) {
   Report report{title, {}, {}, {}, log_in_words(log)};

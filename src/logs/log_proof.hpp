@@ -1,4 +1,4 @@
-// Readings and events as they come in, put together to tracks. Private to io.
+// Readings and events as they come in, put together to tracks.
 #pragma once
 
 #include <cstdint>
@@ -58,11 +58,11 @@ class EventTracks {
     bool is_sorted = true;
     Where odd_at{};  ///< the first text that is no state, of a sensor that had some
     std::string odd_text{};
-    struct Part {
+    struct FilePart {
       std::size_t file;
       std::int64_t first_us, last_us;
     };
-    std::vector<Part> parts{};  ///< of each file that tells of it
+    std::vector<FilePart> parts{};  ///< of each file that tells of it
   };
   void begin_file() noexcept { ++file_; }
   /// Finds or makes it; none if there are too many.
@@ -99,7 +99,7 @@ struct MotionEnds {
 [[nodiscard]] std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
                                             const std::function<void(std::int64_t)>& overlap);
 
-// What the rows themselves say of a log's form: proofs, so that no form is guessed. Private to io.
+// What the rows themselves say of a log's form: proofs, so that no form is guessed.
 
 /// A map of one line, to be pasted, that settles what rows leave open: "{pirsim_log: 1, rows: changes}".
 [[nodiscard]] std::string settling_map(const std::string& keys);

@@ -13,6 +13,7 @@
 #include "logs/log_proof.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/columns.hpp"
+#include "model/schema/words.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/log.hpp"
 
@@ -132,10 +133,13 @@ std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& t
   return chosen;
 }
 
-std::vector<std::string> names_of(const std::vector<EventTracks::Track>& tracks) {
+/// Its index. Throws Error(input) if the log has none.
+std::size_t track_of(const std::vector<EventTracks::Track>& tracks, const std::string& in_log, const Where& where) {
+  const auto found = std::ranges::find(tracks, in_log, &EventTracks::Track::in_log);
+  if (found != tracks.end()) return static_cast<std::size_t>(found - tracks.begin());
   std::vector<std::string> names;
   for (const EventTracks::Track& track : tracks) names.push_back(track.in_log);
-  return names;
+  throw Error(ErrorCode::input, where, "the log has no events of '" + in_log + "'" + near_or_all(in_log, names));
 }
 
 /// In the map's order, or by name.
@@ -146,11 +150,7 @@ std::vector<std::size_t> chosen_sensors(const std::vector<EventTracks::Track>& t
   for (const LogMap::Sensor& sensor : map.sensors) {
     if (sensor.in_log == map.people)
       throw Error(ErrorCode::input, where, "'" + map.people + "' can't be a sensor and the people");
-    const auto found = std::ranges::find(tracks, sensor.in_log, &EventTracks::Track::in_log);
-    if (found == tracks.end())
-      throw Error(ErrorCode::input, where,
-                  "the log has no events of '" + sensor.in_log + "'" + near_or_all(sensor.in_log, names_of(tracks)));
-    chosen.push_back(static_cast<std::size_t>(found - tracks.begin()));
+    chosen.push_back(track_of(tracks, sensor.in_log, where));
   }
   return chosen;
 }
@@ -197,12 +197,10 @@ LogTrack event_track(EventTracks::Track& track, LogReading& reading, const Log& 
   const bool is_people = unknown == log_state::unknown_count;
   const auto remark = [&](const std::string& before, const std::string& after) {
     return [&reading, &track, &log, before, after](std::int64_t us) {
-      const auto where = [&] { return Where{log.files.front().path}; };
-      const auto message = [&] {
+      reading.remarks.add(before + track.in_log, {log.files.front().path}, [&] {
         return before + track.in_log + after + to_text({us, 0}, log.clock) +
                (log.clock == LogClock::zoned ? " UTC" : "");
-      };
-      reading.remarks.add(before + track.in_log, where, message);
+      });
     };
   };
   MotionEnds ends;
@@ -235,7 +233,7 @@ void require_sensors(const Log& log, const LogMap::Seconds& seconds, const std::
 
 /// What two files tell of one sensor at the same time may be two sensors'.
 void require_parts(EventTracks::Track& track, const std::vector<InputFile>& files) {
-  std::ranges::sort(track.parts, {}, &EventTracks::Track::Part::first_us);
+  std::ranges::sort(track.parts, {}, &EventTracks::Track::FilePart::first_us);
   for (std::size_t i = 1; i < track.parts.size(); ++i) {
     if (track.parts[i - 1].last_us < track.parts[i].first_us) continue;
     const std::size_t later = std::max(track.parts[i - 1].file, track.parts[i].file);
@@ -248,20 +246,17 @@ void finish_events(Log& log, LogReading& reading) {
   std::vector<EventTracks::Track>& tracks = reading.events.tracks();
   const Where where{log.files.front().path};
   const std::vector<std::size_t> chosen = chosen_sensors(tracks, log.map, where);
-  const std::string& people = log.map.people;
-  if (!people.empty() && std::ranges::find(tracks, people, &EventTracks::Track::in_log) == tracks.end())
-    throw Error(ErrorCode::input, where,
-                "the log has no events of '" + people + "'" + near_or_all(people, names_of(tracks)));
+  std::optional<std::size_t> people;
+  if (!log.map.people.empty()) people = track_of(tracks, log.map.people, where);
   log.begin_us = std::max(*reading.first_us, reading.from_us.value_or(*reading.first_us));
   const std::int64_t after_last = *reading.last_us + 1;  // which belongs to it
   log.end_us = std::min(after_last, reading.to_us.value_or(after_last));
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const bool is_people = !log.map.people.empty() && tracks[i].in_log == log.map.people;
-    if (is_people) {
+    if (i == people) {
       require_parts(tracks[i], log.files);
       log.people = event_track(tracks[i], reading, log, log_state::unknown_count);
     }
-    if (is_people || std::ranges::find(chosen, i) != chosen.end()) continue;
+    if (i == people || std::ranges::find(chosen, i) != chosen.end()) continue;
     log.others.push_back(tracks[i].in_log);
     log.n_other_rows += tracks[i].n_states + tracks[i].n_other;
   }
@@ -269,12 +264,10 @@ void finish_events(Log& log, LogReading& reading) {
     EventTracks::Track& track = tracks[i];
     require_parts(track, log.files);
     if (!track.odd_text.empty()) {
-      reading.remarks.add(
-          "odd state", [&] { return track.odd_at; },
-          [&] {
-            return "'" + track.odd_text + "' is no state of '" + track.in_log +
-                   "': it counts as unknown, until its next event";
-          });
+      reading.remarks.add("odd state", track.odd_at, [&] {
+        return "'" + track.odd_text + "' is no state of '" + track.in_log +
+               "': it counts as unknown, until its next event";
+      });
     }
     log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
   }
@@ -352,9 +345,8 @@ void remark_constant_sensors(const Log& log, LogReading& reading) {
     const std::string hint = has(log_state::on) && !log.has_readings()
                                  ? "; if its log tells motion alone, say `hold_s: {" + track.name + ": 30}` in a map"
                                  : "";
-    reading.remarks.add(
-        "constant " + always, [&] { return Where{log.files.front().path}; },
-        [&] { return "sensor '" + track.name + "' " + always + hint; });
+    reading.remarks.add("constant " + always, {log.files.front().path},
+                        [&] { return "sensor '" + track.name + "' " + always + hint; });
   }
 }
 
@@ -443,8 +435,8 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
                                       to_text({*reading.first_us, 0}, log.clock) + (zone ? " UTC" : "") +
                                       ", its last " + to_text({*reading.last_us, 0}, log.clock));
   };
+  log.others = first.shape().others;
   if (first.readings()) {
-    log.others = first.shape().others;
     std::vector<LogFile*> parts;
     for (const auto& file : read) parts.push_back(file.get());
     std::ranges::stable_sort(parts, {}, [](LogFile* file) { return file->readings()->first_us(); });
@@ -453,7 +445,6 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     if (log.interval_us == 0) refuse_part();
     all.finish();
   } else {
-    log.others = first.shape().others;
     if (reading.from_us.value_or(*reading.first_us) > *reading.last_us ||
         reading.to_us.value_or(*reading.last_us) < *reading.first_us)
       refuse_part();
@@ -483,48 +474,51 @@ LogRows read_log_rows(std::span<const std::filesystem::path> files, const LogMap
   return LogWindows(log, window_s).rows();
 }
 
+}  // namespace pirsim::io
+
 // What a log's columns mean, as YAML.
 
+namespace pirsim {
+
+template <>
+struct Words<LogMap::Form> {
+  static constexpr WordList<LogMap::Form, 3> all{
+      {{"wide", LogMap::Form::wide}, {"events", LogMap::Form::events}, {"intervals", LogMap::Form::intervals}}};
+};
+template <>
+struct Words<LogMap::Rows> {
+  static constexpr WordList<LogMap::Rows, 2> all{
+      {{"readings", LogMap::Rows::readings}, {"changes", LogMap::Rows::changes}}};
+};
+template <>
+struct Words<LogMap::Dates> {
+  static constexpr WordList<LogMap::Dates, 3> all{{{"month_first", LogMap::Dates::month_first},
+                                                   {"day_first", LogMap::Dates::day_first},
+                                                   {"year_first", LogMap::Dates::year_first}}};
+};
+template <>
+struct Words<LogMap::Stamps> {
+  static constexpr WordList<LogMap::Stamps, 2> all{{{"end", LogMap::Stamps::end}, {"begin", LogMap::Stamps::begin}}};
+};
+template <>
+struct Words<LogMap::People> {
+  static constexpr WordList<LogMap::People, 2> all{
+      {{"count", LogMap::People::count}, {"presence", LogMap::People::presence}}};
+};
+template <>
+struct Words<LogMap::Empty> {
+  static constexpr WordList<LogMap::Empty, 2> all{
+      {{"unknown", LogMap::Empty::unknown}, {"unchanged", LogMap::Empty::unchanged}}};
+};
+
+}  // namespace pirsim
+
+namespace pirsim::io {
 namespace {
 
-template <typename Value>
-using Names = std::vector<std::pair<std::string, Value>>;
-
-const Names<LogMap::Form>& forms() {
-  static const Names<LogMap::Form> names{
-      {"wide", LogMap::Form::wide}, {"events", LogMap::Form::events}, {"intervals", LogMap::Form::intervals}};
-  return names;
-}
-const Names<LogMap::Rows>& kinds_of_rows() {
-  static const Names<LogMap::Rows> names{{"readings", LogMap::Rows::readings}, {"changes", LogMap::Rows::changes}};
-  return names;
-}
-const Names<LogMap::Dates>& orders() {
-  static const Names<LogMap::Dates> names{{"month_first", LogMap::Dates::month_first},
-                                          {"day_first", LogMap::Dates::day_first},
-                                          {"year_first", LogMap::Dates::year_first}};
-  return names;
-}
-const Names<LogMap::Stamps>& stamps() {
-  static const Names<LogMap::Stamps> names{{"end", LogMap::Stamps::end}, {"begin", LogMap::Stamps::begin}};
-  return names;
-}
-const Names<LogMap::People>& meanings() {
-  static const Names<LogMap::People> names{{"count", LogMap::People::count}, {"presence", LogMap::People::presence}};
-  return names;
-}
-const Names<LogMap::Empty>& meanings_of_empty() {
-  static const Names<LogMap::Empty> names{{"unknown", LogMap::Empty::unknown}, {"unchanged", LogMap::Empty::unchanged}};
-  return names;
-}
-
-template <typename Value>
-const std::string& word(const Names<Value>& names, Value value) {
-  for (const auto& [name, known] : names) {
-    if (known == value) return name;
-  }
-  static const std::string none;
-  return none;
+template <Worded Enum>
+Enum choice(YamlMap& map, const std::string& key, Enum otherwise) {
+  return map.choice(key, otherwise, {Words<Enum>::all.begin(), Words<Enum>::all.end()});
 }
 
 /// `time: stamp`, `time: [Date, Time]`, or `time: [Date, Time, AmPm]`.
@@ -616,7 +610,7 @@ void read_people(YamlMap& map, LogMap& log) {
   }
   YamlMap people(*node, map.faults(), "people");
   log.people = people.required_text("column");
-  log.people_mean = people.choice("means", log.people_mean, meanings());
+  log.people_mean = choice(people, "means", log.people_mean);
   people.finish();
 }
 
@@ -625,16 +619,16 @@ LogMap map_from(const YamlNode& root) {
   YamlMap map(root, faults, "map of a log");
   check_version(map, "pirsim_log");
   LogMap log;
-  log.form = map.choice("form", log.form, forms());
-  log.rows = map.choice("rows", log.rows, kinds_of_rows());
-  log.empty = map.choice("empty", log.empty, meanings_of_empty());
+  log.form = choice(map, "form", log.form);
+  log.rows = choice(map, "rows", log.rows);
+  log.empty = choice(map, "empty", log.empty);
   log.time = read_time(map, "time");
   log.end = read_time(map, "end");
   log.sensor_column = map.text("sensor");
   log.state_column = map.text("state");
   log.time_zone = map.text("time_zone");
-  log.dates = map.choice("dates", log.dates, orders());
-  log.stamps = map.choice("stamps", log.stamps, stamps());
+  log.dates = choice(map, "dates", log.dates);
+  log.stamps = choice(map, "stamps", log.stamps);
   log.sensors = read_sensors(map);
   check_sensors(map, log.sensors);
   read_people(map, log);
@@ -681,21 +675,21 @@ std::string to_yaml(const LogMap& map) {
     for (const auto& [sensor, s] : value.each) out << "  " << quoted_yaml(sensor) << ": " << csv_number(s) << '\n';
   };
   line("pirsim_log", "1");
-  line("form", word(forms(), map.form));
-  line("rows", word(kinds_of_rows(), map.rows));
-  line("empty", word(meanings_of_empty(), map.empty));
+  line("form", word_of(map.form));
+  line("rows", word_of(map.rows));
+  line("empty", word_of(map.empty));
   time("time", map.time);
   time("end", map.end);
   text("sensor", map.sensor_column);
   text("state", map.state_column);
   text("time_zone", map.time_zone);
-  line("dates", word(orders(), map.dates));
-  if (map.stamps != LogMap::Stamps::end) line("stamps", word(stamps(), map.stamps));
+  line("dates", word_of(map.dates));
+  if (map.stamps != LogMap::Stamps::end) line("stamps", word_of(map.stamps));
   if (!map.sensors.empty()) out << "sensors:\n";
   for (const LogMap::Sensor& sensor : map.sensors)
     out << "  " << quoted_yaml(sensor.name) << ": " << quoted_yaml(sensor.in_log) << '\n';
   if (!map.people.empty())
-    out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word(meanings(), map.people_mean) << "}\n";
+    out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word_of(map.people_mean) << "}\n";
   if (map.people_mean == LogMap::People::none) line("people", "none");
   number("interval_s", map.interval_s);
   number("longest_gap_s", map.longest_gap_s);

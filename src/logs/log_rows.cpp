@@ -21,6 +21,13 @@ std::vector<std::string> columns_of_log(const LogRows& rows) {
   return names;
 }
 
+/// Its bits and people.
+void take_window(const LogRows& rows, std::size_t window, Sample& row) {
+  row.people = rows.people.empty() ? log_state::unknown_count : rows.people[window];
+  row.bits.resize(rows.sensors.size());
+  for (std::size_t i = 0; i < row.bits.size(); ++i) row.bits[i] = rows.at(window, i);
+}
+
 }  // namespace
 
 void write_log_rows(const LogWindows& windows, const std::function<void(std::string_view)>& write) {
@@ -36,15 +43,11 @@ void write_log_rows(const LogWindows& windows, const std::function<void(std::str
       zero_s = has_clock ? rows.begin.front().seconds() : 0.0;
       table.emplace(text, columns_of_log(rows));
     }
-    const LogMoment after = windows.begin(first + rows.n_windows());
     for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-      // Windows end where the next one begins, by the offset there.
-      const LogMoment& end = i + 1 < rows.n_windows() ? rows.begin[i + 1] : after;
+      const LogMoment end = windows.begin(first + i + 1);
       row.time_s = static_cast<double>(end.us) / 1e6 - zero_s;
       row.clock = to_text(end, rows.clock);
-      row.people = rows.people.empty() ? log_state::unknown_count : rows.people[i];
-      const auto bits = rows.motion.begin() + static_cast<std::ptrdiff_t>(i * rows.sensors.size());
-      row.bits.assign(bits, bits + static_cast<std::ptrdiff_t>(rows.sensors.size()));
+      take_window(rows, i, row);
       table->write(row);
     }
     write(text.view());
@@ -125,7 +128,8 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
   throw Error(ErrorCode::input, {files_.front().string()}, "there are no rows");
 }
 
-void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
+std::int64_t RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
+  std::int64_t n_missing = 0;
   Sample row;
   std::optional<double> told_to_s;  // of a log, whose parts are given in order
   for (const fs::path& path : files_) {
@@ -149,9 +153,10 @@ void RowFiles::each(const TakeRow& take, const std::function<void()>& begin) {
         told_to_s = end_s;
       }
       take(row, is_log ? date_of_begin(row, about_.window_s) : std::string());
-      n_missing_ += file->is_filled() ? 1 : 0;
+      n_missing += file->is_filled() ? 1 : 0;
     }
   }
+  return n_missing;
 }
 
 LogSamples::LogSamples(const Log& log, std::optional<double> window_s) : log_(log) {
@@ -160,7 +165,7 @@ LogSamples::LogSamples(const Log& log, std::optional<double> window_s) : log_(lo
   about_.people = log.people ? People::known : People::unknown;
 }
 
-void LogSamples::each(const TakeRow& take, const std::function<void()>& /*begin*/) const {
+std::int64_t LogSamples::each(const TakeRow& take, const std::function<void()>& /*begin*/) const {
   constexpr std::size_t at_once = 100'000, to_seconds = 19, to_date = 10;
   const LogWindows windows(log_, about_.window_s);
   Sample row;
@@ -168,9 +173,7 @@ void LogSamples::each(const TakeRow& take, const std::function<void()>& /*begin*
   for (std::size_t first = 0; first < windows.size(); first += at_once) {
     const LogRows rows = windows.rows(first, at_once);
     for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-      const auto begin = rows.motion.begin() + static_cast<std::ptrdiff_t>(i * rows.sensors.size());
-      row.bits.assign(begin, begin + static_cast<std::ptrdiff_t>(rows.sensors.size()));
-      row.people = rows.people.empty() ? -1 : rows.people[i];
+      io::take_window(rows, i, row);
       row.time_s = static_cast<double>(first + i + 1) * about_.window_s;
       if (rows.clock == LogClock::elapsed) {
         take(row, {});
@@ -180,6 +183,7 @@ void LogSamples::each(const TakeRow& take, const std::function<void()>& /*begin*
       take(row, to_text(rows.begin[i], rows.clock).substr(0, to_date));
     }
   }
+  return 0;
 }
 
 }  // namespace pirsim::control

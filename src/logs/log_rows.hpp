@@ -41,15 +41,14 @@ class RowFiles {
   explicit RowFiles(std::span<const std::filesystem::path> paths);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
-  /// Once. Where rows are missing in a run, rows of which nothing is known. begin: before the first row of each file.
-  void each(const TakeRow& take, const std::function<void()>& begin);
-  [[nodiscard]] std::int64_t n_missing() const noexcept { return n_missing_; }  ///< of those that were given
+  /// Once. Where rows are missing in a run, rows of which nothing is known; returns how many. begin: before the first
+  /// row of each file.
+  std::int64_t each(const TakeRow& take, const std::function<void()>& begin);
 
  private:
   std::vector<std::filesystem::path> files_;
   std::unique_ptr<io::RowReader> first_;
   RowsAbout about_;
-  std::int64_t n_missing_ = 0;
 };
 
 /// A log in windows; the log outlives it. window_s: none: its readings' interval, or a second of events.
@@ -57,8 +56,8 @@ class LogSamples {
  public:
   LogSamples(const Log& log, std::optional<double> window_s);
   [[nodiscard]] const RowsAbout& about() const noexcept { return about_; }
-  void each(const TakeRow& take, const std::function<void()>& begin) const;
-  [[nodiscard]] std::int64_t n_missing() const noexcept { return 0; }  ///< a log tells it itself
+  /// As RowFiles; returns 0: what is missing a log tells itself.
+  std::int64_t each(const TakeRow& take, const std::function<void()>& begin) const;
 
  private:
   const Log& log_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 #include <span>
 #include <string_view>
@@ -53,6 +54,9 @@ class Finder {
 
  private:
   [[nodiscard]] NameSays says(std::size_t column) const { return table_.says(column); }
+  [[nodiscard]] bool is_called_motion(std::size_t column) const {
+    return says(column) == NameSays::motion || says(column) == NameSays::presence;
+  }
 
   // Intervals.
 
@@ -103,9 +107,7 @@ class Finder {
     std::vector<std::size_t> called, texts, states, open;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
       if (shape.time.has(i) || shape.end->has(i)) continue;
-      const bool is_called_so =
-          says(i) == NameSays::state || says(i) == NameSays::motion || says(i) == NameSays::presence;
-      if (is_called_so && has_states(i)) states.push_back(i);
+      if ((is_called_motion(i) || says(i) == NameSays::state) && has_states(i)) states.push_back(i);
       if (says(i) == NameSays::nothing && is_state_like(i) && known_states(i).size() > 1) open.push_back(i);
       if (says(i) == NameSays::sensor) called.push_back(i);
       if (is_text(i)) texts.push_back(i);
@@ -175,7 +177,7 @@ class Finder {
       if (i == sensor || time_.has(i) || is_bookkeeping(i)) continue;
       if (says(i) == NameSays::state) by_rank[0].push_back(i);  // also where the first lines are of other quantities
       if (!has_states(i)) continue;
-      if (says(i) == NameSays::motion || says(i) == NameSays::presence) by_rank[1].push_back(i);
+      if (is_called_motion(i)) by_rank[1].push_back(i);
       if (says(i) == NameSays::nothing && looks_like_motion(i)) by_rank[2].push_back(i);
     }
     for (std::vector<std::size_t>& columns : by_rank) {
@@ -435,20 +437,15 @@ class Finder {
   }
   /// Beside what is called motion or presence, other states may be the truth, or doors.
   [[nodiscard]] bool has_motion() const {
-    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      const bool is_called_so = says(i) == NameSays::motion || says(i) == NameSays::presence;
-      if (!time_.has(i) && is_called_so && has_states(i) && !is_bookkeeping(i)) return true;
-    }
-    return false;
+    return std::ranges::any_of(std::views::iota(std::size_t{0}, table_.n_columns()), [&](std::size_t i) {
+      return !time_.has(i) && is_called_motion(i) && has_states(i) && !is_bookkeeping(i);
+    });
   }
   [[nodiscard]] bool has_sure_sensors() const {
-    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      const bool is_called_so =
-          says(i) == NameSays::motion || says(i) == NameSays::presence || says(i) == NameSays::state;
+    return std::ranges::any_of(std::views::iota(std::size_t{0}, table_.n_columns()), [&](std::size_t i) {
       const bool is_sure = table_.header_line == 0 && is_state_like(i) && known_states(i).size() > 1;
-      if (!time_.has(i) && has_states(i) && (is_called_so || is_sure)) return true;
-    }
-    return false;
+      return !time_.has(i) && has_states(i) && (is_called_motion(i) || says(i) == NameSays::state || is_sure);
+    });
   }
   /// Whether anybody is there, beside how many.
   [[nodiscard]] bool is_told_by_count(std::size_t column, const LogShape& shape) const {

@@ -1,4 +1,4 @@
-// What a log's first lines tell of its form. Private to io.
+// What a log's first lines tell of its form.
 #pragma once
 
 #include <cstdint>

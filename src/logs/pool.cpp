@@ -1,15 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
-#include "files/disk/file.hpp"
 #include "files/read/csv_reader.hpp"
+#include "logs/calibrate.hpp"
 #include "model/core/text.hpp"
 #include "pirsim/calibrate.hpp"
 #include "pirsim/csv.hpp"
-#include "pirsim/log_facts.hpp"
-#include "show/report.hpp"
 
 // From a recipe's dataset to the rooms of a calibration.
 
@@ -91,6 +88,72 @@ Parameters parameters_of(const fs::path& folder) {
   return parameters;
 }
 
+void append(const LogRows& rows, std::size_t window, counting::Stretch& stretch) {
+  for (std::size_t k = 0; k < rows.sensors.size(); ++k) stretch.motion.push_back(rows.at(window, k));
+  const bool is_counted = !rows.people.empty() && rows.people_mean == LogMap::People::count;  // presence: 1 or more
+  if (is_counted) stretch.people.push_back(rows.people[window]);
+}
+
+/// Readings of which the sensor is known that is known least.
+std::size_t least_known(const counting::Stretch& stretch) {
+  std::size_t least = stretch.n_readings();
+  for (std::size_t k = 0; k < static_cast<std::size_t>(stretch.n_sensors); ++k) {
+    std::size_t known = 0;
+    for (std::size_t i = k; i < stretch.motion.size(); i += static_cast<std::size_t>(stretch.n_sensors))
+      known += stretch.motion[i] == counting::unknown_bit ? 0 : 1;
+    least = std::min(least, known);
+  }
+  return least;
+}
+
+// A log counted.
+
+void require_fit(const counting::Counter& counter, const LogRows& rows, const LogTraits& log) {
+  std::vector<std::string> own = counter.sensors, others = log.sensors;
+  std::ranges::sort(own);
+  std::ranges::sort(others);
+  const bool are_others = !own.empty() && !others.empty() && own != others;
+  if (static_cast<int>(rows.sensors.size()) != counter.n_sensors || are_others) {
+    throw Error(ErrorCode::input, "the counter is for " +
+                                      counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
+                                      (own.empty() ? "" : " (" + joined(counter.sensors, ", ") + ")") +
+                                      ", and the log has " + std::to_string(rows.sensors.size()) + ": " +
+                                      joined(rows.sensors, ", ") + "; a map (--map) chooses among them" +
+                                      (own.empty() ? ""
+                                                   : " and names them, `sensors: {" + counter.sensors.front() + ": " +
+                                                         rows.sensors.front() + ", ...}`"));
+  }
+  if (log.interval_s <= counter.settings.step_s * (1.0 + 1e-6)) return;
+  throw Error(ErrorCode::input, "the log has a reading every " + shortest_number(log.interval_s) +
+                                    " s, and the counter counts by readings of " +
+                                    shortest_number(counter.settings.step_s) +
+                                    " s: it can't tell what was between. Make a counter of such a log "
+                                    "(pirsim calibrate --step " +
+                                    shortest_number(std::ceil(log.interval_s)) + ")");
+}
+
+/// Sensors that aren't told, holds that differ.
+std::vector<std::string> remarks_of(const counting::Counter& counter, const LogTraits& log) {
+  std::vector<std::string> remarks;
+  if (counter.sensors.empty() && !log.sensors.empty()) {
+    remarks.push_back("it doesn't tell which sensors it is for: the log's are taken for them (" +
+                      joined(log.sensors, ", ") + ")");
+  }
+  for (std::size_t k = 0; k < log.holds_s.size(); ++k) {
+    const auto own = std::ranges::find(counter.sensors, log.sensors[k]);
+    if (own == counter.sensors.end() || counter.holds_s.empty()) continue;
+    const std::optional<double> known = counter.holds_s[static_cast<std::size_t>(own - counter.sensors.begin())];
+    constexpr double least_share = 0.2, least_s = 1.0;  // assumed (0.1-0.5, 0.5-2): logs of one sensor differ by less
+    if (!known || !log.holds_s[k]) continue;
+    const double by_s = std::abs(*log.holds_s[k] - *known);
+    if (by_s <= std::max(least_s, least_share * *known)) continue;
+    remarks.push_back("'" + log.sensors[k] + "' holds motion for " + fixed(*log.holds_s[k], 1) +
+                      " s in this log, and for " + fixed(*known, 1) +
+                      " s in the one that the counter comes from: its counts may be off");
+  }
+  return remarks;
+}
+
 }  // namespace
 
 std::optional<double> common_hold(const LogFacts& facts) {
@@ -166,8 +229,14 @@ std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double st
   return pool;
 }
 
-bool may_have(const dataset::RecipeSpec& recipe, int n_sensors) {
-  return std::ranges::any_of(recipe.rooms, [&](const dataset::RoomGroupSpec& group) {
+void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors) {
+  if (recipe.n_rooms() < fewest_rooms) {
+    throw Error(ErrorCode::input, Where{recipe.file.string()},
+                "a calibration needs " + std::to_string(fewest_rooms) + " rooms at least, better 60; it has " +
+                    std::to_string(recipe.n_rooms()));
+  }
+  // Of the user's own scenes nobody knows before they are read.
+  const bool may_fit = std::ranges::any_of(recipe.rooms, [&](const dataset::RoomGroupSpec& group) {
     int least = 0, most = 0;
     for (const dataset::SensorGroupSpec& sensors : group.rooms.sensors) {
       least += sensors.count.least;
@@ -175,6 +244,34 @@ bool may_have(const dataset::RecipeSpec& recipe, int n_sensors) {
     }
     return group.home || !group.scenes.empty() || (least <= n_sensors && n_sensors <= most);
   });
+  if (may_fit) return;
+  throw Error(ErrorCode::input, Where{recipe.file.string()},
+              "the log has " + counted(static_cast<std::size_t>(n_sensors), "sensor") +
+                  ", and no room has as many: change its sensors, or name those of the room in a map (--map)");
+}
+
+WeighingLog weighing_log(const Log& log, std::optional<double> step_s, std::optional<double> hold_s) {
+  const double interval_s = static_cast<double>(log.interval_us) * 1e-6;
+  if (step_s && *step_s < interval_s) {
+    throw Error(ErrorCode::usage, "--step: the log has a reading every " + shortest_number(interval_s) +
+                                      " s, so that nothing shorter can be told apart");
+  }
+  const LogFacts facts = facts_of(log);
+  WeighingLog weighing{LogWindows(log, step_s.value_or(usual_window_s(log))).rows(), traits_of(facts), hold_s};
+  if (hold_s)
+    std::ranges::fill(weighing.traits.holds_s, hold_s);
+  else
+    weighing.hold_s = common_hold(facts);
+  return weighing;
+}
+
+Calibration weigh_rooms(const fs::path& folder, const WeighingLog& log, const LogDays& days,
+                        const counting::Settings& settings, unsigned threads) {
+  const Pool pool(read_pool(folder, static_cast<int>(log.rows.sensors.size()), settings.step_s, threads), settings,
+                  threads);
+  Calibration made = pool.calibrate(std::vector{whole_log(log.rows)}, days.whole);
+  remember(log.traits, made.counter);
+  return made;
 }
 
 Interval hours_of(const dataset::RecipeSpec& recipe) {
@@ -185,28 +282,6 @@ Interval hours_of(const dataset::RecipeSpec& recipe) {
   }
   return hours;
 }
-
-namespace {
-
-void append(const LogRows& rows, std::size_t window, counting::Stretch& stretch) {
-  for (std::size_t k = 0; k < rows.sensors.size(); ++k) stretch.motion.push_back(rows.at(window, k));
-  const bool is_counted = !rows.people.empty() && rows.people_mean == LogMap::People::count;  // presence: 1 or more
-  if (is_counted) stretch.people.push_back(rows.people[window]);
-}
-
-/// Readings of which the sensor is known that is known least.
-std::size_t least_known(const counting::Stretch& stretch) {
-  std::size_t least = stretch.n_readings();
-  for (std::size_t k = 0; k < static_cast<std::size_t>(stretch.n_sensors); ++k) {
-    std::size_t known = 0;
-    for (std::size_t i = k; i < stretch.motion.size(); i += static_cast<std::size_t>(stretch.n_sensors))
-      known += stretch.motion[i] == counting::unknown_bit ? 0 : 1;
-    least = std::min(least, known);
-  }
-  return least;
-}
-
-}  // namespace
 
 counting::Stretch whole_log(const LogRows& rows) {
   counting::Stretch stretch{static_cast<int>(rows.sensors.size()), {}};
@@ -242,152 +317,6 @@ LogDays days_of(const LogRows& rows, const Interval& hours) {
   }
   return days;
 }
-
-// A log counted: as a table, and as a page.
-
-namespace {
-
-std::size_t n_counts(const LogCounts& counts) { return static_cast<std::size_t>(counts.estimates.n_counts); }
-
-std::span<const double> probabilities(const LogCounts& counts, std::size_t reading) {
-  return std::span(counts.estimates.probabilities).subspan(reading * n_counts(counts), n_counts(counts));
-}
-
-/// Of a reading's probabilities.
-double mean_count(std::span<const double> probabilities) {
-  double mean = 0.0;
-  for (std::size_t n = 0; n < probabilities.size(); ++n) mean += static_cast<double>(n) * probabilities[n];
-  return mean;
-}
-
-/// Readings of one date, or all of a log without dates.
-struct Day {
-  std::string name;
-  std::size_t begin = 0, end = 0;
-};
-
-std::vector<Day> days_of(const LogRows& rows) {
-  std::vector<Day> days;
-  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    const std::string date = rows.clock == LogClock::elapsed ? "" : to_text(rows.begin[i], rows.clock).substr(0, 10);
-    if (days.empty() || days.back().name != date) days.push_back({date, i, i});
-    days.back().end = i + 1;
-  }
-  return days;
-}
-
-/// Stretches in which nobody knows the number.
-std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const Day& day) {
-  std::vector<io::SeriesChart::Phase> phases;
-  for (std::size_t i = day.begin; i < day.end;) {
-    std::size_t end = i;
-    while (end < day.end && !counts.estimates.is_told(end)) ++end;
-    if (end > i) {
-      phases.push_back({"unknown", static_cast<double>(i - day.begin) * counts.rows.window_s,
-                        static_cast<double>(end - day.begin) * counts.rows.window_s});
-    }
-    i = std::max(end, i + 1);
-  }
-  return phases;
-}
-
-/// The middle 90 % of a reading's counts.
-Interval likely(const LogCounts& counts, std::size_t reading) {
-  return {static_cast<double>(counts.estimates.quantile(reading, 0.05)),
-          static_cast<double>(counts.estimates.quantile(reading, 0.95))};
-}
-
-io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
-  const LogRows& rows = counts.rows;
-  io::SeriesChart chart;
-  chart.title = day.name.empty() ? "The log" : day.name;
-  chart.window_s = rows.window_s;
-  chart.end_s = static_cast<double>(day.end - day.begin) * rows.window_s;
-  for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
-    io::SeriesChart::Row row{rows.sensors[k], {}};
-    for (std::size_t i = day.begin; i < day.end; ++i) {
-      if (rows.at(i, k) == 1) row.times_s.push_back(static_cast<double>(i + 1 - day.begin) * rows.window_s);
-    }
-    chart.rows.push_back(std::move(row));
-  }
-  chart.phases = unknown_phases(counts, day);
-  for (std::size_t i = day.begin; i < day.end; ++i) {
-    io::SeriesChart::Count now{static_cast<double>(i - day.begin) * rows.window_s};
-    if (counts.estimates.is_told(i)) now.people = counts.estimates.count(i), now.likely = likely(counts, i);
-    const bool is_same =
-        !chart.people.empty() && chart.people.back().people == now.people && chart.people.back().likely == now.likely;
-    if (!is_same) chart.people.push_back(now);
-  }
-  if (rows.clock != LogClock::elapsed && day.begin + 1 < rows.n_windows())
-    chart.first_clock = to_text(rows.begin[day.begin + 1], rows.clock).substr(0, 19);
-  return chart;
-}
-
-/// Hours with each count.
-io::Table hours_table(const LogCounts& counts, const std::vector<Day>& days) {
-  io::Table table{{"day"}, {}};
-  for (std::size_t n = 0; n < n_counts(counts); ++n) table.headings.push_back(counted(n, "person", "people") + ", h");
-  table.headings.emplace_back("unknown, h");
-  for (const Day& day : days) {
-    std::vector<double> hours(n_counts(counts) + 1, 0.0);
-    for (std::size_t i = day.begin; i < day.end; ++i) {
-      const std::size_t column =
-          counts.estimates.is_told(i) ? static_cast<std::size_t>(counts.estimates.count(i)) : n_counts(counts);
-      hours[column] += counts.rows.window_s / 3600.0;
-    }
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.name});
-    for (const double one : hours) row.push_back(fixed(one, 1));
-  }
-  return table;
-}
-
-void require_fit(const counting::Counter& counter, const LogRows& rows, const LogTraits& log) {
-  std::vector<std::string> own = counter.sensors, others = log.sensors;
-  std::ranges::sort(own);
-  std::ranges::sort(others);
-  const bool are_others = !own.empty() && !others.empty() && own != others;
-  if (static_cast<int>(rows.sensors.size()) != counter.n_sensors || are_others) {
-    throw Error(ErrorCode::input, "the counter is for " +
-                                      counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
-                                      (own.empty() ? "" : " (" + joined(counter.sensors, ", ") + ")") +
-                                      ", and the log has " + std::to_string(rows.sensors.size()) + ": " +
-                                      joined(rows.sensors, ", ") + "; a map (--map) chooses among them" +
-                                      (own.empty() ? ""
-                                                   : " and names them, `sensors: {" + counter.sensors.front() + ": " +
-                                                         rows.sensors.front() + ", ...}`"));
-  }
-  if (log.interval_s <= counter.settings.step_s * (1.0 + 1e-6)) return;
-  throw Error(ErrorCode::input, "the log has a reading every " + shortest_number(log.interval_s) +
-                                    " s, and the counter counts by readings of " +
-                                    shortest_number(counter.settings.step_s) +
-                                    " s: it can't tell what was between. Make a counter of such a log "
-                                    "(pirsim calibrate --step " +
-                                    shortest_number(std::ceil(log.interval_s)) + ")");
-}
-
-/// Sensors that aren't told, holds that differ.
-std::vector<std::string> remarks_of(const counting::Counter& counter, const LogTraits& log) {
-  std::vector<std::string> remarks;
-  if (counter.sensors.empty() && !log.sensors.empty()) {
-    remarks.push_back("it doesn't tell which sensors it is for: the log's are taken for them (" +
-                      joined(log.sensors, ", ") + ")");
-  }
-  for (std::size_t k = 0; k < log.holds_s.size(); ++k) {
-    const auto own = std::ranges::find(counter.sensors, log.sensors[k]);
-    if (own == counter.sensors.end() || counter.holds_s.empty()) continue;
-    const std::optional<double> known = counter.holds_s[static_cast<std::size_t>(own - counter.sensors.begin())];
-    constexpr double least_share = 0.2, least_s = 1.0;  // assumed (0.1-0.5, 0.5-2): logs of one sensor differ by less
-    if (!known || !log.holds_s[k]) continue;
-    const double by_s = std::abs(*log.holds_s[k] - *known);
-    if (by_s <= std::max(least_s, least_share * *known)) continue;
-    remarks.push_back("'" + log.sensors[k] + "' holds motion for " + fixed(*log.holds_s[k], 1) +
-                      " s in this log, and for " + fixed(*known, 1) +
-                      " s in the one that the counter comes from: its counts may be off");
-  }
-  return remarks;
-}
-
-}  // namespace
 
 LogTraits traits_of(const LogFacts& facts) {
   LogTraits traits{facts.interval_s, {}, {}};
@@ -427,84 +356,6 @@ std::optional<CountError> error_of(const LogCounts& counts) {
   error.mean /= static_cast<double>(error.readings);
   if (error.occupied > 0) error.while_occupied /= static_cast<double>(error.occupied);
   return error;
-}
-
-std::string in_words(const CountError& error) {
-  return "wrong by " + fixed(error.mean, 2) + " people on average, over " + counted(error.readings, "reading") +
-         (error.occupied == 0 || error.occupied == error.readings
-              ? ""
-              : "; by " + fixed(error.while_occupied, 2) + " over the " + std::to_string(error.occupied) +
-                    " with somebody");
-}
-
-std::string how_sure(const LogCounts& counts) {
-  constexpr double sure = 0.8;  // assumed: one of five such numbers may be another
-  std::size_t n = 0, n_sure = 0, n_unknown = 0;
-  for (std::size_t i = 0; i < counts.rows.n_windows(); ++i) {
-    const int people = counts.estimates.count(i);
-    n_unknown += people == counting::unknown_count ? 1U : 0U;
-    if (people <= 0) continue;
-    ++n;
-    n_sure += probabilities(counts, i)[static_cast<std::size_t>(people)] >= sure ? 1U : 0U;
-  }
-  const auto hours = [&](std::size_t readings) {
-    return fixed(static_cast<double>(readings) * counts.rows.window_s / 3600.0, 1);
-  };
-  std::string told = n == 0 ? ""
-                            : "Somebody is there for " + hours(n) + " h; the number is told with 80 % or more for " +
-                                  hours(n_sure) + " h of them.";
-  if (n_unknown > 0)
-    told += (n == 0 ? "" : " ") + ("For " + hours(n_unknown)) + " h nothing is known, and no number is told.";
-  return told;
-}
-
-void write_counts(std::ostream& out, const LogCounts& counts) {
-  const LogRows& rows = counts.rows;
-  const bool has_clock = rows.clock != LogClock::elapsed;
-  out << (has_clock ? "time" : "time_s") << ",people,mean";
-  for (std::size_t n = 0; n < n_counts(counts); ++n) out << ",p" << n;
-  out << '\n';
-  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    LogMoment end = rows.begin[i];
-    end.us += std::llround(rows.window_s * 1e6);
-    if (i + 1 < rows.n_windows()) end.offset_s = rows.begin[i + 1].offset_s;
-    std::string line = has_clock ? to_text(end, rows.clock) : io::csv_number(end.seconds());
-    const auto of_reading = probabilities(counts, i);
-    const bool is_told = counts.estimates.is_told(i);
-    line += ',' + (is_told ? std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2) : ",");
-    for (const double p : of_reading) line += ',' + (is_told ? fixed(p, 3) : "");
-    out << line << '\n';
-  }
-}
-
-void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
-                       const std::string& made_by) {
-  const std::vector<Day> days = days_of(counts.rows);
-  constexpr std::size_t most_days = 31;
-  io::Report report;
-  report.title = "How many people were there?";
-  report.footer = made_by;
-  std::string error;
-  if (const auto known = error_of(counts))
-    error = "Compared with the log's own counts it is " + in_words(*known) + ".";
-  else if (counts.expected_error && counts.warning.empty())
-    error = "In rooms like those that the counter comes from such counts are wrong by " +
-            fixed(counts.expected_error->low, 2) + " to " + fixed(counts.expected_error->high, 2) +
-            " people on average, from half an hour before the first person to half an hour after the last.";
-  report.finding = counts.warning + (counts.warning.empty() || error.empty() ? "" : " ") + error;
-  report.paragraphs = {
-      "Log: " + log +
-      ". Each day shows the estimated number of people, a line, above the readings with motion of each sensor; nine "
-      "times of ten the number is within what is pale."};
-  if (const std::string sure = how_sure(counts); !sure.empty()) report.paragraphs.push_back(sure);
-  if (days.size() > most_days)
-    report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
-  report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});
-  io::ReportSection lines{"Day by day", {}, {}, {}};
-  for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d)
-    lines.charts.emplace_back(chart_of(counts, days[d]));
-  report.sections.push_back(std::move(lines));
-  io::write_report(file, report);
 }
 
 }  // namespace pirsim::calibrate

@@ -22,7 +22,6 @@ namespace pirsim::io {
 namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Takes a text from its front.
 class Scanner {
@@ -219,13 +218,57 @@ std::optional<Stamp> as_time_of_day(std::string_view text) {
   return Stamp{Stamp::Kind::time_of_day, *us, 0, 0.0};
 }
 
+using std::chrono::seconds;
+/// Rounded down.
+seconds whole_seconds(std::int64_t us) { return std::chrono::floor<seconds>(std::chrono::microseconds(us)); }
+
+/// Some systems keep the rules of years to come in a form that the date library passes over: clocks would never be
+/// changed again, and nobody would know. Such a data base lacks what every other one has.
+void require_coming_years(const date::tzdb& known) {
+  constexpr seconds july_2036{2'098'656'000};
+  constexpr seconds ahead{7200};
+  for (const date::time_zone& zone : known.zones) {
+    if (zone.name() != "Europe/Berlin") continue;
+    if (zone.get_info(date::sys_seconds(july_2036)).offset == ahead) return;
+    throw Error(ErrorCode::io,
+                "the system's time zones don't list summer times of the years to come (made by zic -b slim); "
+                "time_zone needs those that do (zic -b fat)");
+  }
+}
+
+const date::time_zone* find_zone(const std::string& name, const Where& where) {
+  try {
+    const date::tzdb& known = date::get_tzdb();
+    require_coming_years(known);
+    for (const date::time_zone& zone : known.zones) {
+      if (zone.name() == name) return &zone;
+    }
+    std::vector<std::string> names;
+    for (const date::time_zone& zone : known.zones) names.push_back(zone.name());
+    throw Error(ErrorCode::input, where,
+                "time_zone: '" + name + "' is not a time zone, as Europe/Berlin is one" + did_you_mean(name, names));
+  } catch (const std::runtime_error& fault) {
+    if (dynamic_cast<const Error*>(&fault) != nullptr) throw;
+    throw Error(ErrorCode::io, std::string("the system's time zones can't be read (package tzdata): ") + fault.what());
+  }
+}
+
+// What is outside is a clock that wasn't set, or a column that is no time. `assumed`: no log of motion is older.
+constexpr int first_year = 1990, end_year = 2100;
+
+int year_of(std::int64_t us) {
+  const auto day = std::chrono::floor<std::chrono::days>(
+      std::chrono::sys_time<std::chrono::microseconds>(std::chrono::microseconds(us)));
+  return static_cast<int>(std::chrono::year_month_day(day).year());
+}
+
+}  // namespace
+
 std::string_view trimmed(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
   return text;
 }
-
-}  // namespace
 
 std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order) {
   text = trimmed(text);
@@ -277,74 +320,6 @@ bool is_offset(std::string_view text) {
   return !text.empty() && !is_short && offset(scan).kind == Offset::Kind::given;
 }
 
-}  // namespace pirsim::io
-
-// Moments of a log, and how they are told.
-
-namespace pirsim {
-
-using io::us_per_s;
-LogMoment Log::moment(std::int64_t us) const {
-  const auto after = std::ranges::upper_bound(offsets, us, {}, &LogOffset::from_us);
-  if (offsets.empty()) return {us, 0};
-  return {us, after == offsets.begin() ? after->offset_s : (after - 1)->offset_s};
-}
-
-std::string to_text(const LogMoment& moment, LogClock clock) {
-  if (clock == LogClock::elapsed) return shortest_number(moment.seconds()) + " s";
-  const std::int64_t local = moment.local_us();
-  const std::int64_t part = ((local % us_per_s) + us_per_s) % us_per_s;
-  std::string text = RunClock{(local - part) / us_per_s}.text(0.0);
-  if (part == 0) return text;
-  std::array<char, 16> digits{};
-  std::snprintf(digits.data(), digits.size(), ".%06d", static_cast<int>(part));
-  text += digits.data();
-  while (text.ends_with('0')) text.pop_back();
-  return text;
-}
-
-}  // namespace pirsim
-
-namespace pirsim::io {
-namespace {
-
-using std::chrono::seconds;
-/// Rounded down.
-seconds whole_seconds(std::int64_t us) { return std::chrono::floor<seconds>(std::chrono::microseconds(us)); }
-
-/// Some systems keep the rules of years to come in a form that the date library passes over: clocks would never be
-/// changed again, and nobody would know. Such a data base lacks what every other one has.
-void require_coming_years(const date::tzdb& known) {
-  constexpr seconds july_2036{2'098'656'000};
-  constexpr seconds ahead{7200};
-  for (const date::time_zone& zone : known.zones) {
-    if (zone.name() != "Europe/Berlin") continue;
-    if (zone.get_info(date::sys_seconds(july_2036)).offset == ahead) return;
-    throw Error(ErrorCode::io,
-                "the system's time zones don't list summer times of the years to come (made by zic -b slim); "
-                "time_zone needs those that do (zic -b fat)");
-  }
-}
-
-const date::time_zone* find_zone(const std::string& name, const Where& where) {
-  try {
-    const date::tzdb& known = date::get_tzdb();
-    require_coming_years(known);
-    for (const date::time_zone& zone : known.zones) {
-      if (zone.name() == name) return &zone;
-    }
-    std::vector<std::string> names;
-    for (const date::time_zone& zone : known.zones) names.push_back(zone.name());
-    throw Error(ErrorCode::input, where,
-                "time_zone: '" + name + "' is not a time zone, as Europe/Berlin is one" + did_you_mean(name, names));
-  } catch (const std::runtime_error& fault) {
-    if (dynamic_cast<const Error*>(&fault) != nullptr) throw;
-    throw Error(ErrorCode::io, std::string("the system's time zones can't be read (package tzdata): ") + fault.what());
-  }
-}
-
-}  // namespace
-
 struct LogZone::Data {
   const date::time_zone* zone;
   std::optional<date::sys_info> last;  ///< most times have the offset of the one before
@@ -391,19 +366,6 @@ LogZone::Found LogZone::utc_of(std::int64_t local_us) {
   const std::int64_t second = local_us - us_per_s * found.second.offset.count();
   return {first, second, found.result == date::local_info::ambiguous ? Kind::ambiguous : Kind::missing};
 }
-
-namespace {
-
-// What is outside is a clock that wasn't set, or a column that is no time. `assumed`: no log of motion is older.
-constexpr int first_year = 1990, end_year = 2100;
-
-int year_of(std::int64_t us) {
-  const auto day = std::chrono::floor<std::chrono::days>(
-      std::chrono::sys_time<std::chrono::microseconds>(std::chrono::microseconds(us)));
-  return static_cast<int>(std::chrono::year_month_day(day).year());
-}
-
-}  // namespace
 
 void set_unit(TimeColumns& columns, double typical, std::string_view name) {
   const double size = std::abs(typical);
@@ -503,3 +465,29 @@ std::vector<LogOffset> LogTimer::offsets(std::int64_t begin_us, std::int64_t end
 }
 
 }  // namespace pirsim::io
+
+namespace pirsim {
+
+// Moments of a log, and how they are told.
+
+using io::us_per_s;
+LogMoment Log::moment(std::int64_t us) const {
+  const auto after = std::ranges::upper_bound(offsets, us, {}, &LogOffset::from_us);
+  if (offsets.empty()) return {us, 0};
+  return {us, after == offsets.begin() ? after->offset_s : (after - 1)->offset_s};
+}
+
+std::string to_text(const LogMoment& moment, LogClock clock) {
+  if (clock == LogClock::elapsed) return shortest_number(moment.seconds()) + " s";
+  const std::int64_t local = moment.local_us();
+  const std::int64_t part = ((local % us_per_s) + us_per_s) % us_per_s;
+  std::string text = RunClock{(local - part) / us_per_s}.text(0.0);
+  if (part == 0) return text;
+  std::array<char, 16> digits{};
+  std::snprintf(digits.data(), digits.size(), ".%06d", static_cast<int>(part));
+  text += digits.data();
+  while (text.ends_with('0')) text.pop_back();
+  return text;
+}
+
+}  // namespace pirsim

@@ -1,4 +1,4 @@
-// Microseconds, in which logs are read. Private to io.
+// Microseconds, in which logs are read.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,14 @@ namespace pirsim::io {
 
 inline constexpr std::int64_t us_per_ms = 1'000, us_per_s = 1'000'000, us_per_day = 86'400 * us_per_s;
 
-// What a text says about time. Private to io.
+/// To a multiple of b, which is above 0.
+[[nodiscard]] inline std::int64_t rounded_down(std::int64_t a, std::int64_t b) { return a - ((a % b) + b) % b; }
+
+// What a text says about time.
+
+[[nodiscard]] inline char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+/// Without the spaces around it.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
 
 struct Stamp {
   enum class Kind {
@@ -55,7 +62,7 @@ struct DateOrder {
 /// "UTC", "Z", "+0200", "-05:30": but not "+02".
 [[nodiscard]] bool is_offset(std::string_view text);
 
-// A time zone of the IANA data base, with its summer time. Private to io.
+// A time zone of the IANA data base, with its summer time.
 
 class LogZone {
  public:
@@ -86,7 +93,7 @@ class LogZone {
   std::unique_ptr<Data> data_;
 };
 
-// From a row's time stamp to a moment. Private to io.
+// From a row's time stamp to a moment.
 
 /// Which columns tell the time, and how.
 struct TimeColumns {
@@ -139,5 +146,24 @@ class LogTimer {
   enum class Pass { first, second } pass_ = Pass::first;  ///< of an hour that there is twice
   std::int64_t last_local_us_ = 0;
 };
+
+// Stretches of time in which a track keeps its value.
+
+struct LogRun {
+  std::int64_t from_us, to_us;
+  std::int32_t value;
+};
+
+/// Calls tell(run) for all of a track, in order of time, until the log's end. Readings hold from the reading before.
+template <typename Tell>
+void each_stretch(const Log& log, const LogTrack& track, Tell tell) {
+  for (std::size_t i = 0; i < track.changes.size(); ++i) {
+    const LogChange& change = track.changes[i];
+    const bool is_last = i + 1 == track.changes.size();
+    const std::int64_t end = is_last ? log.end_us : track.changes[i + 1].us - track.changes[i + 1].since_last_us;
+    const std::int64_t begin = change.us - change.since_last_us;
+    tell(LogRun{begin, std::max(begin, end), change.value});
+  }
+}
 
 }  // namespace pirsim::io

@@ -31,32 +31,10 @@
 #include "surveys/picture.hpp"
 #include "surveys/sight.hpp"
 
-// What a household's days hold, told without running them.
-
 namespace pirsim::studies {
-
-/// Times are seconds of the day.
-struct ExpectedResident {
-  std::string id, bed;
-  double mean_up_s = 0.0, mean_to_bed_s = 0.0;          ///< ends of the night's sleep
-  std::array<double, sim::n_home_activities> mean_s{};  ///< of a day
-};
-
-/// Of one trial's days, or its first ones.
-struct HomeOutlook {
-  std::int64_t first_day = 0;
-  int days = 0, working_days = 0, visits = 0;
-  std::vector<ExpectedResident> residents;
-};
-
-/// trial: index of one with a household. Draws at most so many days, without walking.
-[[nodiscard]] HomeOutlook home_outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days = 1000);
-void print(std::ostream& out, const HomeOutlook& outlook);
-
-/// What residents do where they are, since the scene has no place for it. Empty without a household.
-[[nodiscard]] std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study);
-
 namespace {
+
+constexpr std::uint32_t most_days = 1000;  ///< that an outlook draws
 
 /// "{mean: 08:30, sd_min: 30}"
 std::string written(const ClockSpec& clock) {
@@ -125,35 +103,20 @@ std::string household_lines(const OrdinaryDays& days) {
   return text.str();
 }
 
-}  // namespace
-
-std::string script_text(const OrdinaryDays& days) {
-  const bool is_home = days.is_home();
-  std::ostringstream text;
-  text << "# Ordinary days. Each replicate is a day, from first_day on"
-       << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
-       << "name: "
-       << (is_home          ? "days at home"
-           : days.staff > 0 ? "office days"
-                            : "meeting days")
-       << '\n'
-       << "seed: 1\n"
-       << "replicates: " << days.days << '\n'
-       << "schedule:\n"
-       << "  first_day: " << days.first_day << '\n'
-       << (is_home ? household_lines(days) : office_lines(days));
-  return text.str();
-}
-
-namespace {
-
 using sim::HomeActivity;
 
 constexpr std::size_t at(HomeActivity activity) { return static_cast<std::size_t>(activity); }
 HomeActivity activity_of(std::size_t index) { return static_cast<HomeActivity>(index); }
 
+/// Sums over days; times are seconds of the day.
+struct ExpectedResident {
+  std::string id, bed;
+  double up_s = 0.0, to_bed_s = 0.0;                      ///< ends of the night's sleep
+  std::array<double, sim::n_home_activities> active_s{};  ///< with each activity
+};
+
 void add_day(ExpectedResident& resident, const std::vector<sim::HomeStay>& stays) {
-  for (const sim::HomeStay& stay : stays) resident.mean_s[at(stay.activity)] += stay.to_s - stay.from_s;
+  for (const sim::HomeStay& stay : stays) resident.active_s[at(stay.activity)] += stay.to_s - stay.from_s;
   // Who is up at four, or goes to bed after it, is so at the ends of the day.
   const auto is_up = [](const sim::HomeStay& stay) {
     return stay.activity != HomeActivity::sleep && stay.activity != HomeActivity::toilet;
@@ -161,25 +124,50 @@ void add_day(ExpectedResident& resident, const std::vector<sim::HomeStay>& stays
   const auto first = std::ranges::find_if(stays, is_up);
   const auto last = std::ranges::find_if(stays.rbegin(), stays.rend(), is_up);
   if (first == stays.end()) return;
-  resident.mean_up_s += first->from_s;
-  resident.mean_to_bed_s += last->to_s;
+  resident.up_s += first->from_s;
+  resident.to_bed_s += last->to_s;
 }
 
 /// "23:10", also after midnight.
 std::string time_of_day_text(double seconds) { return clock_text(0, seconds).substr(11, 5); }
 
-void print_resident(std::ostream& out, const ExpectedResident& resident) {
+void print_resident(std::ostream& out, const ExpectedResident& resident, double n_days) {
   out << "  " << std::left << std::setw(12) << resident.id << std::right << " bed " << resident.bed << "; up "
-      << time_of_day_text(resident.mean_up_s) << '-' << time_of_day_text(resident.mean_to_bed_s)
+      << time_of_day_text(resident.up_s / n_days) << '-' << time_of_day_text(resident.to_bed_s / n_days)
       << "; hours a day:" << std::fixed << std::setprecision(1);
   std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < resident.mean_s.size(); ++i)
-    if (resident.mean_s[i] > 0.0) order.push_back(i);
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return resident.mean_s[i]; });
+  for (std::size_t i = 0; i < resident.active_s.size(); ++i)
+    if (resident.active_s[i] > 0.0) order.push_back(i);
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return resident.active_s[i] / n_days; });
   for (const std::size_t i : order)
     out << (i == order.front() ? " " : ", ") << sim::manner_of(activity_of(i)).phase << ' '
-        << resident.mean_s[i] / 3600.0;
+        << resident.active_s[i] / n_days / 3600.0;
   out << '\n';
+}
+
+/// The first days of the first trial, as drawn without walking.
+void print_home(std::ostream& out, const sim::CompiledStudy& study) {
+  const sim::TrialModel& trial = study.trials().front();
+  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
+  std::vector<ExpectedResident> residents;
+  for (const sim::PersonModel& person : trial.people) {
+    const auto& part = person.spec.part;
+    if (part && part->part == SchedulePart::resident) residents.push_back({person.spec.id, part->seat});
+  }
+  const std::uint32_t n_days = std::min(study.n_runs() / n_trials, most_days);
+  std::size_t n_working_days = 0, n_visits = 0;
+  for (std::uint32_t run = 0; run < n_days * n_trials; run += n_trials) {
+    const std::int64_t day = sim::day_of(study, run);
+    const sim::HomeDay drawn = sim::draw_home_day(*trial.schedule->household, study.seed(), run, day);
+    n_working_days += is_working_day(day) ? 1 : 0;
+    n_visits += drawn.visits.size();
+    for (std::size_t i = 0; i < residents.size(); ++i) add_day(residents[i], drawn.residents[i]);
+  }
+  out << "household: " << counted(n_days, "day") << " from " << clock_text(sim::day_of(study, 0), 0.0).substr(0, 10)
+      << " (" << counted(n_working_days, "working day")
+      << "), each from 04:00 to 04:00; means as drawn, before anybody has walked\n";
+  for (const ExpectedResident& resident : residents) print_resident(out, resident, std::max(1U, n_days));
+  out << "  visits: " << n_visits << "\n\n";
 }
 
 /// The place of somebody else over which a resident gets into their own bed, or nullptr.
@@ -212,69 +200,6 @@ void warn_of_beds(const sim::CompiledStudy& study, const sim::TrialModel& trial,
             "', and stays in bed while somebody sleeps there: no way leads to a place to stand at its own side");
   }
 }
-
-}  // namespace
-
-HomeOutlook home_outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days) {
-  const sim::TrialModel& model = study.trials()[trial];
-  const HouseholdSpec& household = *model.schedule->household;
-  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
-  HomeOutlook result;
-  result.first_day = sim::day_of(study, static_cast<std::uint32_t>(trial));
-  result.days =
-      static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
-  for (const sim::PersonModel& person : model.people) {
-    const auto& part = person.spec.part;
-    if (part && part->part == SchedulePart::resident) result.residents.push_back({person.spec.id, part->seat});
-  }
-  for (int k = 0; k < result.days; ++k) {
-    const auto run = static_cast<std::uint32_t>(k) * n_trials + static_cast<std::uint32_t>(trial);
-    const std::int64_t day = sim::day_of(study, run);
-    const sim::HomeDay drawn = sim::draw_home_day(household, study.seed(), run, day);
-    result.working_days += is_working_day(day) ? 1 : 0;
-    result.visits += static_cast<int>(drawn.visits.size());
-    for (std::size_t i = 0; i < result.residents.size(); ++i) add_day(result.residents[i], drawn.residents[i]);
-  }
-  const double n = std::max(1, result.days);
-  for (ExpectedResident& resident : result.residents) {
-    resident.mean_up_s /= n, resident.mean_to_bed_s /= n;
-    for (double& mean_s : resident.mean_s) mean_s /= n;
-  }
-  return result;
-}
-
-void print(std::ostream& out, const HomeOutlook& outlook) {
-  out << "household: " << counted(static_cast<std::size_t>(outlook.days), "day") << " from "
-      << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
-      << counted(static_cast<std::size_t>(outlook.working_days), "working day")
-      << "), each from 04:00 to 04:00; means as drawn, before anybody has walked\n";
-  for (const ExpectedResident& resident : outlook.residents) print_resident(out, resident);
-  out << "  visits: " << outlook.visits << "\n\n";
-}
-
-std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
-  const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
-  const auto home = std::ranges::find_if(study.trials(), has_household);
-  if (home == study.trials().end()) return {};
-  const bool someone_works_there = std::ranges::any_of(home->schedule->household->residents, [](const auto& resident) {
-    return resident.occupation == Occupation::works_at_home;
-  });
-  GroupedWarnings lacking;
-  for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
-    if (activity_of(i) == HomeActivity::work && !someone_works_there) continue;
-    const sim::HomeManner manner = sim::manner_of(activity_of(i));
-    if (sim::has_place_for(study.scene(), activity_of(i))) continue;
-    lacking.add("no place", home->schedule->where, manner.phase,
-                std::string("household: no place for ") + manner.phase + " (`for: [" +
-                    std::string(manner.uses.front()) + "]` in its mark): residents do that where they are");
-  }
-  Diagnostics told;
-  lacking.tell(told);
-  warn_of_beds(study, *home, told);
-  return told.warnings();
-}
-
-namespace {
 
 /// Somebody is in the room from one moment of the day to another.
 struct Visit {
@@ -340,65 +265,14 @@ void print_person(std::ostream& out, const ExpectedPerson& person) {
       << person.mean_present_s / 3600.0 << " h\n";
 }
 
-}  // namespace
-
-ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days) {
-  const sim::TrialModel& model = study.trials()[trial];
-  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
-  ScheduleOutlook result;
-  result.first_day = sim::day_of(study, static_cast<std::uint32_t>(trial));
-  result.days =
-      static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
-  std::vector<std::size_t> staff;
-  for (std::size_t i = 0; i < model.people.size(); ++i) {
-    const auto& part = model.people[i].spec.part;
-    if (!part || part->part != SchedulePart::staff) continue;
-    staff.push_back(i);
-    result.staff.push_back({model.people[i].spec.id, part->seat, 0, {}, {}, 0.0, 0.0, 0.0});
-  }
-  double cleaning_s = 0.0;
-  int cleanings = 0;
-  std::set<std::string> seats;
-  for (int k = 0; k < result.days; ++k) {
-    const auto run = static_cast<std::uint32_t>(k) * n_trials + static_cast<std::uint32_t>(trial);
-    const std::int64_t day = sim::day_of(study, run);
-    const sim::DayDraw draw = sim::draw_times(study, run);
-    result.working_days += is_working_day(day) ? 1 : 0;
-    for (std::size_t i = 0; i < staff.size(); ++i) {
-      note_person(result.staff[i], draw.stays[staff[i]]);
-      if (!draw.stays[staff[i]].empty()) seats.insert(result.staff[i].seat);
-    }
-    for (const sim::Meeting& meeting : draw.meetings) {
-      result.meetings.push_back(
-          {day, meeting.begin_s, meeting.end_s, meeting.people.size(), model.schedule->meetings[meeting.room].area});
-    }
-    if (draw.cleaning_s) cleaning_s += *draw.cleaning_s, ++cleanings;
-    note_most(result, draw, day);
-  }
-  for (ExpectedPerson& person : result.staff) {
-    const double n = std::max(1, person.days);
-    person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
-  }
-  if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
-  std::ranges::stable_sort(result.meetings, {},
-                           [](const ExpectedMeeting& meeting) { return std::pair(meeting.day, meeting.begin_s); });
-  for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
-    for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
-  }
-  for (const SeatSpec& seat : study.scene().seats) {
-    if (seats.contains(seat.id)) result.seats.push_back(seat.id);
-  }
-  return result;
-}
+// What `pirsim check` tells, for a reader.
 
 void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::CompiledStudy& study) {
   constexpr std::size_t most_told = 12;
   const ScheduleSpec& schedule = *study.trials().front().schedule;
-  out << "schedule: " << counted(static_cast<std::size_t>(outlook.days), "day") << " from "
-      << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
-      << counted(static_cast<std::size_t>(outlook.working_days), "working day") << "), each from "
-      << clock(3600.0 * schedule.from_h) << " to " << clock(3600.0 * schedule.to_h)
-      << "; times as drawn for whole days, before anybody has walked\n";
+  out << "schedule: " << counted(outlook.days, "day") << " from " << clock_text(outlook.first_day, 0.0).substr(0, 10)
+      << " (" << counted(outlook.working_days, "working day") << "), each from " << clock(3600.0 * schedule.from_h)
+      << " to " << clock(3600.0 * schedule.to_h) << "; times as drawn for whole days, before anybody has walked\n";
   for (const ExpectedPerson& person : outlook.staff) print_person(out, person);
   if (!schedule.meetings.empty()) out << "  meetings: " << outlook.meetings.size() << '\n';
   for (std::size_t i = 0; i < std::min(most_told, outlook.meetings.size()); ++i) {
@@ -416,14 +290,6 @@ void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::Compile
   if (outlook.seats.empty()) out << " none";
   out << "\n\n";
 }
-
-}  // namespace pirsim::studies
-
-// What `pirsim check` tells, for a reader.
-
-namespace pirsim {
-namespace studies {
-namespace {
 
 /// "S1 S2", "all 10", or the first of very many.
 std::string named(const std::vector<std::string>& seats, std::size_t n_all) {
@@ -625,9 +491,9 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {
     if (script.trials.front().schedule->household) {
-      print(out, home_outlook(model.compiled(), 0));
+      print_home(out, model.compiled());
     } else {
-      print(out, outlook(model.compiled(), 0), model.compiled());
+      print(out, outlook(model.compiled()), model.compiled());
     }
   }
   if (!script.trials.empty() && script.trials.front().occupancy)
@@ -638,15 +504,106 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
 }
 
 }  // namespace
-}  // namespace studies
+
+std::string script_text(const OrdinaryDays& days) {
+  const bool is_home = days.is_home();
+  std::ostringstream text;
+  text << "# Ordinary days. Each replicate is a day, from first_day on"
+       << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
+       << "name: "
+       << (is_home          ? "days at home"
+           : days.staff > 0 ? "office days"
+                            : "meeting days")
+       << '\n'
+       << "seed: 1\n"
+       << "replicates: " << days.days << '\n'
+       << "schedule:\n"
+       << "  first_day: " << days.first_day << '\n'
+       << (is_home ? household_lines(days) : office_lines(days));
+  return text.str();
+}
+
+/// What residents do where they are, since the scene has no place for it, and who can't get out of bed. Empty without
+/// a household.
+std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
+  const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
+  const auto home = std::ranges::find_if(study.trials(), has_household);
+  if (home == study.trials().end()) return {};
+  const bool someone_works_there = std::ranges::any_of(home->schedule->household->residents, [](const auto& resident) {
+    return resident.occupation == Occupation::works_at_home;
+  });
+  GroupedWarnings lacking;
+  for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
+    if (activity_of(i) == HomeActivity::work && !someone_works_there) continue;
+    const sim::HomeManner manner = sim::manner_of(activity_of(i));
+    if (sim::has_place_for(study.scene(), activity_of(i))) continue;
+    lacking.add("no place", home->schedule->where, manner.phase,
+                std::string("household: no place for ") + manner.phase + " (`for: [" +
+                    std::string(manner.uses.front()) + "]` in its mark): residents do that where they are");
+  }
+  Diagnostics told;
+  lacking.tell(told);
+  warn_of_beds(study, *home, told);
+  return told.warnings();
+}
+
+ScheduleOutlook outlook(const sim::CompiledStudy& study) {
+  const sim::TrialModel& model = study.trials().front();
+  const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
+  ScheduleOutlook result;
+  result.first_day = sim::day_of(study, 0);
+  result.days = std::min(study.n_runs() / n_trials, most_days);
+  std::vector<std::size_t> staff;
+  for (std::size_t i = 0; i < model.people.size(); ++i) {
+    const auto& part = model.people[i].spec.part;
+    if (!part || part->part != SchedulePart::staff) continue;
+    staff.push_back(i);
+    result.staff.push_back({model.people[i].spec.id, part->seat, 0, {}, {}, 0.0, 0.0, 0.0});
+  }
+  double cleaning_s = 0.0;
+  int cleanings = 0;
+  std::set<std::string> seats;
+  for (std::uint32_t run = 0; run < result.days * n_trials; run += n_trials) {
+    const std::int64_t day = sim::day_of(study, run);
+    const sim::DayDraw draw = sim::draw_times(study, run);
+    result.working_days += is_working_day(day) ? 1 : 0;
+    for (std::size_t i = 0; i < staff.size(); ++i) {
+      note_person(result.staff[i], draw.stays[staff[i]]);
+      if (!draw.stays[staff[i]].empty()) seats.insert(result.staff[i].seat);
+    }
+    for (const sim::Meeting& meeting : draw.meetings) {
+      result.meetings.push_back(
+          {day, meeting.begin_s, meeting.end_s, meeting.people.size(), model.schedule->meetings[meeting.room].area});
+    }
+    if (draw.cleaning_s) cleaning_s += *draw.cleaning_s, ++cleanings;
+    note_most(result, draw, day);
+  }
+  for (ExpectedPerson& person : result.staff) {
+    const double n = std::max(1, person.days);
+    person.mean_arrival_s /= n, person.mean_departure_s /= n, person.mean_present_s /= n;
+  }
+  if (cleanings > 0) result.mean_cleaning_s = cleaning_s / cleanings;
+  std::ranges::stable_sort(result.meetings, {},
+                           [](const ExpectedMeeting& meeting) { return std::pair(meeting.day, meeting.begin_s); });
+  for (std::size_t room = 0; room < model.schedule->meetings.size() && !result.meetings.empty(); ++room) {
+    for (const std::string& seat : meeting_seats(*model.schedule, room, study.scene())) seats.insert(seat);
+  }
+  for (const SeatSpec& seat : study.scene().seats) {
+    if (seats.contains(seat.id)) result.seats.push_back(seat.id);
+  }
+  return result;
+}
+
+}  // namespace pirsim::studies
+
+namespace pirsim {
 
 CheckReport check_study(const Model& model) {
   CheckReport report;
   report.sight = studies::look_around(model);
   const sim::CompiledStudy& study = model.compiled();
   const studies::Worker worker = studies::worker_of(study.trials());
-  report.work =
-      studies::watch_sitters({study.scene(), study.sensing(), study.array(), study.tracer(), study.seed()}, worker);
+  report.work = studies::watch_sitters(studies::room_of(study), worker);
   std::ostringstream text;
   studies::print_study(text, model, report, worker);
   report.text = std::move(text).str();

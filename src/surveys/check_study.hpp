@@ -46,10 +46,10 @@ struct ExpectedMeeting {
   std::string area;  ///< or no text
 };
 
-/// Of one trial's days, or its first ones.
+/// Of the first trial's days, or its first ones.
 struct ScheduleOutlook {
   std::int64_t first_day = 0;
-  int days = 0, working_days = 0;
+  std::uint32_t days = 0, working_days = 0;
   std::vector<ExpectedPerson> staff;
   std::vector<ExpectedMeeting> meetings;
   std::optional<double> mean_cleaning_s;
@@ -58,8 +58,7 @@ struct ScheduleOutlook {
   std::vector<std::string> seats;  ///< that somebody is meant to sit on
 };
 
-/// trial: index of one with a schedule. Draws at most so many days, without walking.
-[[nodiscard]] ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int most_days = 1000);
-void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::CompiledStudy& study);
+/// Draws a thousand days at most, without walking. The first trial has a schedule.
+[[nodiscard]] ScheduleOutlook outlook(const sim::CompiledStudy& study);
 
 }  // namespace pirsim::studies

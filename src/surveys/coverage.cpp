@@ -30,29 +30,6 @@ SceneSpec without_noise(SceneSpec scene) {
   return scene;
 }
 
-}  // namespace
-
-SurveyBase::SurveyBase(SceneSpec scene, const ScriptSpec& script)
-    : study_(effects::in_force(without_noise(std::move(scene)), script)),
-      array_(std::make_unique<const sim::SensorArray>(study_.scene, study_.sensing,
-                                                      std::make_shared<const rt::Room>(study_.scene.meshes))),
-      stages_(script.effects, {study_.scene, study_.sensing, array_->clipped()}) {}
-
-std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey, effects::Survey kind) {
-  Diagnostics remarks;
-  for (const Issue& issue : effects::idle(effects, survey.scene(), survey.sensing())) {
-    remarks.warning(issue.where, issue.message);
-  }
-  for (const EffectSpec& effect : effects) {
-    const std::vector<effects::Survey>& idle_in = effects::info(effect.name).idle_in;
-    if (std::ranges::find(idle_in, kind) == idle_in.end()) continue;
-    remarks.warning(effect.where, effect.name + " does nothing in a " + std::string(name(kind)));
-  }
-  return remarks.issues();
-}
-
-namespace {
-
 /// Degrees, from 0 up to 360: computed so that ticks one turn apart have the same bits.
 double angle_deg(const TurnSpec& turn, int tick_rate_hz, std::int64_t tick) {
   return std::fmod(turn.deg_per_s * static_cast<double>(tick), 360.0 * tick_rate_hz) / tick_rate_hz;
@@ -72,91 +49,6 @@ bool is_period(const XShapesSpec& spec, int tick_rate_hz, std::int64_t ticks) {
   }
   return true;
 }
-
-}  // namespace
-
-TurningTarget::TurningTarget(const XShapesSpec& spec, int tick_rate_hz, std::int64_t n_ticks) {
-  std::int64_t period = 1;
-  while (period <= n_ticks && !is_period(spec, tick_rate_hz, period)) ++period;
-  n_poses_ = static_cast<std::size_t>(period);
-
-  const double radius = spec.bar_width_m / 2, half_length = spec.bar_length_m / 2 - radius;
-  for (const double height : spec.heights_m) {
-    TurningCross& cross = crosses_.emplace_back();
-    cross.middle = {0.0, height, 0.0};
-    cross.reach_m = half_length + radius;
-    cross.bar = {radius, half_length};
-    for (const double lean_deg : {45.0, -45.0}) {
-      const Quat leaning = glm::angleAxis(radians(lean_deg), Vec3(0, 0, 1));
-      auto& rotations = cross.rotation.emplace_back();
-      for (std::int64_t tick = 0; tick < period; ++tick) {
-        rotations.push_back(orientation(spec, tick_rate_hz, tick) * leaning);
-      }
-    }
-  }
-}
-
-std::vector<PosedShape> TurningTarget::solids(const Vec3& foot, std::int64_t tick) const {
-  const std::size_t pose = static_cast<std::size_t>(tick) % n_poses_;
-  std::vector<PosedShape> result;
-  for (const TurningCross& cross : crosses_) {
-    for (const auto& rotations : cross.rotation) {
-      result.push_back(place(cross.bar, Frame{rotations[pose], foot + cross.middle}));
-    }
-  }
-  return result;
-}
-
-using ray_tests::Lanes;
-constexpr std::size_t width = ray_tests::n_lanes;
-
-std::size_t padded(std::size_t n_poses) noexcept { return (n_poses + width - 1) / width * width; }
-
-std::vector<Vec3> half_axes(const Capsule& bar, const std::vector<Quat>& rotation) {
-  std::vector<Vec3> result;
-  for (const Quat& world_from_bar : rotation) result.push_back(world_from_bar * Vec3(0.0, bar.half_length, 0.0));
-  return result;
-}
-
-void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double radius, BarPoses& poses) {
-  const std::size_t n = half_axes.size(), n_padded = padded(n);
-  for (auto* values : {&poses.ax, &poses.ay, &poses.az, &poses.bx, &poses.by, &poses.bz}) values->resize(n_padded);
-  for (std::size_t i = 0; i < n_padded; ++i) {
-    const Vec3& half_axis = half_axes[std::min(i, n - 1)];
-    poses.ax[i] = static_cast<float>(middle.x - half_axis.x);
-    poses.ay[i] = static_cast<float>(middle.y - half_axis.y);
-    poses.az[i] = static_cast<float>(middle.z - half_axis.z);
-    poses.bx[i] = static_cast<float>(middle.x + half_axis.x);
-    poses.by[i] = static_cast<float>(middle.y + half_axis.y);
-    poses.bz[i] = static_cast<float>(middle.z + half_axis.z);
-  }
-  poses.radius = static_cast<float>(radius);
-}
-
-void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept {
-  using Vector = ray_tests::Vector<Lanes>;
-  const auto all = [](const Vec3f& v) { return Vector{Lanes(v.x), Lanes(v.y), Lanes(v.z)}; };
-  const Vector origin = all(ray.origin), direction = all(ray.direction);
-  const Lanes radius(poses.radius), t_max(range);
-  for (std::size_t i = 0; i < active.size(); i += width) {
-    if (std::all_of(&active[i], &active[i] + width, [](std::uint8_t known) { return known != 0; })) continue;
-    const Vector a{Lanes::at(&poses.ax[i]), Lanes::at(&poses.ay[i]), Lanes::at(&poses.az[i])};
-    const Vector b{Lanes::at(&poses.bx[i]), Lanes::at(&poses.by[i]), Lanes::at(&poses.bz[i])};
-    const auto bar = ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius);
-    for (unsigned int hits = bits(ray_tests::is_hit(bar, t_max)); hits != 0; hits &= hits - 1) {
-      active[i + static_cast<std::size_t>(std::countr_zero(hits))] = 1;
-    }
-  }
-}
-
-bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
-  constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
-  const Vec3 to_middle = middle - Vec3(ray.origin), direction(ray.direction);
-  const double along = std::clamp(glm::dot(to_middle, direction), 0.0, static_cast<double>(range));
-  return glm::length(to_middle - along * direction) <= reach_m + safety_m;
-}
-
-namespace {
 
 bool is_called(const TriMesh& mesh, const std::string& name) {
   return mesh.name == name || mesh.name.starts_with(name + " ");
@@ -393,7 +285,168 @@ ScriptSpec as_script(const CoverageSpec& spec) {
   return script;
 }
 
+/// Sums of the steps between neighbours.
+struct NeighbourSteps {
+  long long sum = 0;
+  std::size_t pairs = 0;
+  int greatest = 0;
+
+  void add(int a, int b) {
+    const int step = std::abs(a - b);
+    greatest = std::max(greatest, step);
+    if (a == 0 || b == 0) return;
+    sum += step;
+    ++pairs;
+  }
+  void add(const NeighbourSteps& other) {
+    sum += other.sum;
+    pairs += other.pairs;
+    greatest = std::max(greatest, other.greatest);
+  }
+};
+
+NeighbourSteps steps_of(const CoverageMap& map, std::size_t sensor) {
+  const FloorGrid& grid = map.grid;
+  NeighbourSteps steps;
+  each_square(grid, [&](std::size_t column, std::size_t row) {
+    const int here = map.count(column, row, sensor);
+    if (column > 0 && grid.on_floor(column - 1, row)) steps.add(map.count(column - 1, row, sensor), here);
+    if (row > 0 && grid.on_floor(column, row - 1)) steps.add(map.count(column, row - 1, sensor), here);
+  });
+  return steps;
+}
+
+/// Squares on the floor for which `seen(column, row)` holds.
+template <typename Seen>
+std::size_t count_squares(const FloorGrid& grid, Seen seen) {
+  std::size_t count = 0;
+  each_square(grid, [&](std::size_t column, std::size_t row) { count += seen(column, row) ? 1 : 0; });
+  return count;
+}
+
+std::vector<std::size_t> all_sensors(const CoverageMap& map) {
+  std::vector<std::size_t> all(map.sensors.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+bool is_seen(const CoverageMap& map, std::size_t column, std::size_t row, const std::vector<std::size_t>& by) {
+  return std::ranges::any_of(by, [&](std::size_t sensor) { return map.count(column, row, sensor) > 0; });
+}
+
+MapFigures figures(const NeighbourSteps& steps, std::size_t seen, const FloorGrid& grid) {
+  MapFigures result;
+  result.pairs = steps.pairs;
+  result.greatest_step = steps.greatest;
+  if (steps.pairs > 0) result.mean_step = static_cast<double>(steps.sum) / static_cast<double>(steps.pairs);
+  if (grid.n_squares() > 0) {
+    result.blind_fraction = 1.0 - static_cast<double>(seen) / static_cast<double>(grid.n_squares());
+  }
+  result.seen_area_m2 = static_cast<double>(seen) * grid.spacing_m() * grid.spacing_m();
+  return result;
+}
+
 }  // namespace
+
+SurveyBase::SurveyBase(SceneSpec scene, const ScriptSpec& script)
+    : study_(effects::in_force(without_noise(std::move(scene)), script)),
+      array_(std::make_unique<const sim::SensorArray>(study_.scene, study_.sensing,
+                                                      std::make_shared<const rt::Room>(study_.scene.meshes))),
+      stages_(script.effects, {study_.scene, study_.sensing, array_->clipped()}) {}
+
+std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey, effects::Survey kind) {
+  Diagnostics remarks;
+  for (const Issue& issue : effects::idle(effects, survey.scene(), survey.sensing())) {
+    remarks.warning(issue.where, issue.message);
+  }
+  for (const EffectSpec& effect : effects) {
+    const std::vector<effects::Survey>& idle_in = effects::info(effect.name).idle_in;
+    if (std::ranges::find(idle_in, kind) == idle_in.end()) continue;
+    remarks.warning(effect.where, effect.name + " does nothing in a " + std::string(name(kind)));
+  }
+  return remarks.issues();
+}
+
+TurningTarget::TurningTarget(const XShapesSpec& spec, int tick_rate_hz, std::int64_t n_ticks) {
+  std::int64_t period = 1;
+  while (period <= n_ticks && !is_period(spec, tick_rate_hz, period)) ++period;
+  n_poses_ = static_cast<std::size_t>(period);
+
+  const double radius = spec.bar_width_m / 2, half_length = spec.bar_length_m / 2 - radius;
+  for (const double height : spec.heights_m) {
+    TurningCross& cross = crosses_.emplace_back();
+    cross.middle = {0.0, height, 0.0};
+    cross.reach_m = half_length + radius;
+    cross.bar = {radius, half_length};
+    for (const double lean_deg : {45.0, -45.0}) {
+      const Quat leaning = glm::angleAxis(radians(lean_deg), Vec3(0, 0, 1));
+      auto& rotations = cross.rotation.emplace_back();
+      for (std::int64_t tick = 0; tick < period; ++tick) {
+        rotations.push_back(orientation(spec, tick_rate_hz, tick) * leaning);
+      }
+    }
+  }
+}
+
+std::vector<PosedShape> TurningTarget::solids(const Vec3& foot, std::int64_t tick) const {
+  const std::size_t pose = static_cast<std::size_t>(tick) % n_poses_;
+  std::vector<PosedShape> result;
+  for (const TurningCross& cross : crosses_) {
+    for (const auto& rotations : cross.rotation) {
+      result.push_back(place(cross.bar, Frame{rotations[pose], foot + cross.middle}));
+    }
+  }
+  return result;
+}
+
+using ray_tests::Lanes;
+constexpr std::size_t width = ray_tests::n_lanes;
+
+std::size_t padded(std::size_t n_poses) noexcept { return (n_poses + width - 1) / width * width; }
+
+std::vector<Vec3> half_axes(const Capsule& bar, const std::vector<Quat>& rotation) {
+  std::vector<Vec3> result;
+  for (const Quat& world_from_bar : rotation) result.push_back(world_from_bar * Vec3(0.0, bar.half_length, 0.0));
+  return result;
+}
+
+void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double radius, BarPoses& poses) {
+  const std::size_t n = half_axes.size(), n_padded = padded(n);
+  for (auto* values : {&poses.ax, &poses.ay, &poses.az, &poses.bx, &poses.by, &poses.bz}) values->resize(n_padded);
+  for (std::size_t i = 0; i < n_padded; ++i) {
+    const Vec3& half_axis = half_axes[std::min(i, n - 1)];
+    poses.ax[i] = static_cast<float>(middle.x - half_axis.x);
+    poses.ay[i] = static_cast<float>(middle.y - half_axis.y);
+    poses.az[i] = static_cast<float>(middle.z - half_axis.z);
+    poses.bx[i] = static_cast<float>(middle.x + half_axis.x);
+    poses.by[i] = static_cast<float>(middle.y + half_axis.y);
+    poses.bz[i] = static_cast<float>(middle.z + half_axis.z);
+  }
+  poses.radius = static_cast<float>(radius);
+}
+
+void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept {
+  using Vector = ray_tests::Vector<Lanes>;
+  const auto all = [](const Vec3f& v) { return Vector{Lanes(v.x), Lanes(v.y), Lanes(v.z)}; };
+  const Vector origin = all(ray.origin), direction = all(ray.direction);
+  const Lanes radius(poses.radius), t_max(range);
+  for (std::size_t i = 0; i < active.size(); i += width) {
+    if (std::all_of(&active[i], &active[i] + width, [](std::uint8_t known) { return known != 0; })) continue;
+    const Vector a{Lanes::at(&poses.ax[i]), Lanes::at(&poses.ay[i]), Lanes::at(&poses.az[i])};
+    const Vector b{Lanes::at(&poses.bx[i]), Lanes::at(&poses.by[i]), Lanes::at(&poses.bz[i])};
+    const auto bar = ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius);
+    for (unsigned int hits = bits(ray_tests::is_hit(bar, t_max)); hits != 0; hits &= hits - 1) {
+      active[i + static_cast<std::size_t>(std::countr_zero(hits))] = 1;
+    }
+  }
+}
+
+bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
+  constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
+  const Vec3 to_middle = middle - Vec3(ray.origin), direction(ray.direction);
+  const double along = std::clamp(glm::dot(to_middle, direction), 0.0, static_cast<double>(range));
+  return glm::length(to_middle - along * direction) <= reach_m + safety_m;
+}
 
 CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
     : spec_(std::move(spec)),
@@ -434,107 +487,24 @@ CoverageMap empty_map(const CoverageStudy& study) {
 
 CoverageMap run_coverage(const CoverageStudy& study, unsigned threads, const RowDone& row_done) {
   CoverageMap map = empty_map(study);
-  const std::size_t n_rows = study.grid().n_rows();
-  std::size_t n_done = 0;
-  ordered_parallel<std::vector<MotionCount>>(
-      n_rows, threads, [&](std::size_t row) { return study.counts_of_row(row); },
-      [&](std::vector<MotionCount>& counts) {
-        map.counts.insert(map.counts.end(), counts.begin(), counts.end());
-        if (row_done) row_done(++n_done, n_rows);
-      });
+  map.counts = row_by_row<MotionCount>(study.grid(), threads, row_done,
+                                       [&](std::size_t row) { return study.counts_of_row(row); });
   return map;
 }
 
-}  // namespace pirsim::studies
-
-namespace pirsim {
-
-CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads, const RowDone& row_done) {
-  const studies::CoverageStudy study(std::move(scene), std::move(spec));
-  return studies::run_coverage(study, threads, row_done);
-}
-
-}  // namespace pirsim
-
-namespace pirsim::studies {
-namespace {
-
-/// Sums of the steps between neighbours.
-struct Steps {
-  long long sum = 0;
-  std::size_t pairs = 0;
-  int greatest = 0;
-
-  void add(int a, int b) {
-    const int step = std::abs(a - b);
-    greatest = std::max(greatest, step);
-    if (a == 0 || b == 0) return;
-    sum += step;
-    ++pairs;
-  }
-  void add(const Steps& other) {
-    sum += other.sum;
-    pairs += other.pairs;
-    greatest = std::max(greatest, other.greatest);
-  }
-};
-
-Steps steps_of(const CoverageMap& map, std::size_t sensor) {
-  const FloorGrid& grid = map.grid;
-  Steps steps;
-  for (std::size_t row = 0; row < grid.n_rows(); ++row) {
-    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
-      if (!grid.on_floor(column, row)) continue;
-      const int here = map.count(column, row, sensor);
-      if (column > 0 && grid.on_floor(column - 1, row)) steps.add(map.count(column - 1, row, sensor), here);
-      if (row > 0 && grid.on_floor(column, row - 1)) steps.add(map.count(column, row - 1, sensor), here);
-    }
-  }
-  return steps;
-}
-
-/// Squares on the floor for which `seen(column, row)` holds.
-template <typename Seen>
-std::size_t count_squares(const FloorGrid& grid, Seen seen) {
-  std::size_t count = 0;
-  for (std::size_t row = 0; row < grid.n_rows(); ++row) {
-    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
-      if (grid.on_floor(column, row) && seen(column, row)) ++count;
-    }
-  }
-  return count;
-}
-
-MapFigures figures(const Steps& steps, std::size_t seen, const FloorGrid& grid) {
-  MapFigures result;
-  result.pairs = steps.pairs;
-  result.greatest_step = steps.greatest;
-  if (steps.pairs > 0) result.mean_step = static_cast<double>(steps.sum) / static_cast<double>(steps.pairs);
-  if (grid.n_squares() > 0) {
-    result.blind_fraction = 1.0 - static_cast<double>(seen) / static_cast<double>(grid.n_squares());
-  }
-  result.seen_area_m2 = static_cast<double>(seen) * grid.spacing_m() * grid.spacing_m();
-  return result;
-}
-
-}  // namespace
-
 CoverageFigures figures_of(const CoverageMap& map) {
   CoverageFigures result;
-  Steps all;
+  NeighbourSteps all;
   for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
-    const Steps steps = steps_of(map, sensor);
+    const NeighbourSteps steps = steps_of(map, sensor);
     all.add(steps);
     const std::size_t seen = count_squares(
         map.grid, [&](std::size_t column, std::size_t row) { return map.count(column, row, sensor) > 0; });
     result.sensors.push_back(figures(steps, seen, map.grid));
   }
-  const std::size_t seen_by_any = count_squares(map.grid, [&](std::size_t column, std::size_t row) {
-    for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
-      if (map.count(column, row, sensor) > 0) return true;
-    }
-    return false;
-  });
+  const std::vector<std::size_t> sensors = all_sensors(map);
+  const std::size_t seen_by_any =
+      count_squares(map.grid, [&](std::size_t column, std::size_t row) { return is_seen(map, column, row, sensors); });
   result.all = figures(all, seen_by_any, map.grid);
   return result;
 }
@@ -546,21 +516,18 @@ std::vector<AreaCoverage> area_figures_of(const CoverageMap& map, const SceneSpe
     const auto is_here = [&](std::size_t column, std::size_t row) {
       return areas.at(map.grid.centre(column, row)) == area;
     };
-    const std::vector<std::size_t> its_own = areas.sensors_of(area);
-    std::vector<std::size_t> all(map.sensors.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const auto blind_to = [&](const std::vector<std::size_t>& sensors) {
-      return count_squares(map.grid, [&](std::size_t column, std::size_t row) {
-        const auto sees = [&](std::size_t sensor) { return map.count(column, row, sensor) > 0; };
-        return is_here(column, row) && std::ranges::none_of(sensors, sees);
-      });
-    };
     AreaCoverage& one = figures.emplace_back(AreaCoverage{with_sensors(scene, areas, area)});
     one.squares = count_squares(map.grid, is_here);
     if (one.squares == 0) continue;
-    const auto n = static_cast<double>(one.squares);
-    one.blind_fraction = static_cast<double>(blind_to(all)) / n;
-    if (!its_own.empty()) one.blind_to_its_own = static_cast<double>(blind_to(its_own)) / n;
+    const auto blind_to = [&](const std::vector<std::size_t>& sensors) {
+      const std::size_t n_blind = count_squares(map.grid, [&](std::size_t column, std::size_t row) {
+        return is_here(column, row) && !is_seen(map, column, row, sensors);
+      });
+      return static_cast<double>(n_blind) / static_cast<double>(one.squares);
+    };
+    one.blind_fraction = blind_to(all_sensors(map));
+    const std::vector<std::size_t> its_own = areas.sensors_of(area);
+    if (!its_own.empty()) one.blind_to_its_own = blind_to(its_own);
   }
   return figures;
 }
@@ -570,15 +537,12 @@ std::string to_csv(const CoverageMap& map) {
   out << "x_m,z_m";
   for (const std::string& sensor : map.sensors) out << ',' << io::csv_field(sensor);
   out << '\n' << std::fixed;
-  for (std::size_t row = 0; row < map.grid.n_rows(); ++row) {
-    for (std::size_t column = 0; column < map.grid.n_columns(); ++column) {
-      if (!map.grid.on_floor(column, row)) continue;
-      const Vec2 centre = map.grid.centre(column, row);
-      out << std::setprecision(4) << centre.x << ',' << centre.y;
-      for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) out << ',' << map.count(column, row, sensor);
-      out << '\n';
-    }
-  }
+  each_square(map.grid, [&](std::size_t column, std::size_t row) {
+    const Vec2 centre = map.grid.centre(column, row);
+    out << std::setprecision(4) << centre.x << ',' << centre.y;
+    for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) out << ',' << map.count(column, row, sensor);
+    out << '\n';
+  });
   return out.str();
 }
 
@@ -602,3 +566,11 @@ std::string to_text(const CoverageMap& map, const CoverageFigures& figures, cons
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+
+CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads, const RowDone& row_done) {
+  return studies::run_coverage(studies::CoverageStudy(std::move(scene), std::move(spec)), threads, row_done);
+}
+
+}  // namespace pirsim

@@ -15,6 +15,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "engine/sim/run_state.hpp"
 #include "engine/study/study_in_force.hpp"
+#include "model/core/parallel.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
@@ -52,6 +53,29 @@ class SurveyBase {
 /// kind.
 [[nodiscard]] std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey,
                                               effects::Survey kind);
+
+/// Calls visit(column, row) for each square on the floor, row by row.
+template <typename Visit>
+void each_square(const FloorGrid& grid, Visit visit) {
+  for (std::size_t row = 0; row < grid.n_rows(); ++row) {
+    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
+      if (grid.on_floor(column, row)) visit(column, row);
+    }
+  }
+}
+
+/// What of_row(row) gives for each row of squares, one after the other. Threads change no byte.
+template <typename Value, typename OfRow>
+[[nodiscard]] std::vector<Value> row_by_row(const FloorGrid& grid, unsigned threads, const RowDone& row_done,
+                                            OfRow of_row) {
+  std::vector<Value> all;
+  std::size_t n_done = 0;
+  ordered_parallel<std::vector<Value>>(grid.n_rows(), threads, of_row, [&](std::vector<Value>& values) {
+    all.insert(all.end(), values.begin(), values.end());
+    if (row_done) row_done(++n_done, grid.n_rows());
+  });
+  return all;
+}
 
 // The turning crosses of a coverage study: posed once for all squares, and traced ray by ray against all poses at once.
 

@@ -8,20 +8,27 @@
 #include <utility>
 #include <vector>
 
+#include "engine/sim/compiled_study.hpp"
 #include "files/disk/file.hpp"
 #include "files/read/reader_parts.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/check_scene.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/control.hpp"
+#include "pirsim/look.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
 #include "surveys/light_fields.hpp"
+#include "surveys/sight.hpp"
 
 // What is summed up of a light, and figures over days.
 
 namespace pirsim::control {
+namespace {
+
+constexpr std::size_t n_draws = 400, fewest_days = 3;
+constexpr double middle = 0.9;
 
 /// Of one day and delay, in rows.
 struct DelaySums {
@@ -55,52 +62,6 @@ class DrawnDays {
   std::size_t n_days_;
   std::vector<std::uint16_t> times_;
 };
-
-SwitchRule::SwitchRule(const LightSpec& light, double window_s)
-    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)), timer(light.timer) {
-  if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
-  if (!light.manual) return;
-  switch_rows = std::llround(light.manual->switch_s / window_s);
-  grace_rows = std::llround(light.manual->grace_s / window_s);
-}
-
-void LightSwitch::go_on() noexcept {
-  lit_ = was_lit_ = true;
-  since_ = counted_from_ = row_;
-  waits_ = 0;
-}
-
-bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
-  if (!rule.switch_rows) {
-    waits_ = cue.occupied && rule.wave_rows ? waits_ + 1 : 0;
-    return cue.moved || (rule.wave_rows && waits_ > *rule.wave_rows);
-  }
-  if (cue.moved && was_lit_ && row_ - since_ <= rule.grace_rows) return true;
-  waits_ = cue.occupied ? waits_ + 1 : 0;
-  return waits_ > *rule.switch_rows;
-}
-
-void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows) {
-  ++row_;
-  if (cue.is_open && latched_) counted_from_ = row_;
-  latched_ = !cue.is_open && (latched_ || cue.is_behind);
-  if (!lit_) {
-    if (goes_on(rule, cue)) go_on();
-    return;
-  }
-  const bool is_over = row_ - counted_from_ > delay_rows;
-  if (cue.moved && (rule.timer == Timer::restarts || is_over)) counted_from_ = row_;
-  if (latched_ || row_ - counted_from_ <= delay_rows || row_ - since_ < rule.least_on_rows) return;
-  lit_ = false;
-  since_ = row_;
-}
-
-namespace {
-
-constexpr std::size_t n_draws = 400, fewest_days = 3;
-constexpr double middle = 0.9;
-
-}  // namespace
 
 DrawnDays::DrawnDays(std::size_t n_days) : n_days_(n_days) {
   if (n_days < fewest_days) return;
@@ -141,8 +102,6 @@ Figure DrawnDays::rate(const std::vector<double>& events, const std::vector<doub
     figure.over_days = Interval{0.0, -std::log(0.5 - 0.5 * middle) / all};
   return figure;
 }
-
-namespace {
 
 constexpr int curve_min = 60;  ///< delays of the curve, minute by minute
 constexpr std::size_t most_worst = 10;
@@ -504,110 +463,7 @@ LightCosts Light::costs(People people) const {
   return costs;
 }
 
-}  // namespace
-
-const DelayCosts& LightCosts::at(double delay_min) const {
-  const auto found = std::ranges::find(by_delay, delay_min, &DelayCosts::delay_min);
-  if (found == by_delay.end())
-    throw Error(ErrorCode::usage, "light '" + id + "': no delay of " + std::to_string(delay_min) + " min");
-  return *found;
-}
-
-double LightCosts::a_day(double sum) const { return known_days > 0.0 ? sum / known_days : 0.0; }
-
-struct Control::State {
-  RuleSpec rule;
-  double window_s;
-  People people;
-  std::size_t n_areas;
-  std::vector<Light> lights;
-  std::vector<std::uint8_t> lit{};
-  std::vector<std::int32_t> people_of{};
-  std::optional<int> replicate{};  ///< none: a run begins
-  std::string trial{}, day{};
-  bool has_clock = false;
-};
-
-Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People people)
-    : state_(new State{std::move(rule), window_s, people, columns.areas.size(), {}}) {
-  Diagnostics faults;
-  if (!(window_s > 0.0)) faults.error({state_->rule.name}, "expected rows of more than 0 s");
-  for (const LightSpec& light : state_->rule.lights) {
-    Columns own = columns_for(light, columns, faults);
-    if (people == People::unknown && (light.manual || light.wave_s)) {
-      faults.error(light.where, "light '" + light.id + "': " + (light.manual ? "manual" : "wave_s") +
-                                    " goes by who is in the dark, and the rows have no people");
-    }
-    if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s);
-  }
-  faults.throw_if_errors();
-  state_->lit.resize(state_->lights.size());
-  state_->people_of.resize(state_->lights.size());
-}
-Control::~Control() = default;
-Control::Control(Control&&) noexcept = default;
-
-void Control::begin_run() noexcept { state_->replicate.reset(); }
-
-LitRow Control::add(const Sample& row, std::string_view day) {
-  State& state = *state_;
-  const bool is_new_run = row.replicate != state.replicate || row.trial != state.trial;
-  const bool is_new_day = day.empty() ? is_new_run || !state.day.empty() : day != state.day;
-  for (Light& light : state.lights) {
-    if (is_new_run) light.begin();
-    if (is_new_day) light.begin_day(day.empty() ? DayKind::run : DayKind::date);
-  }
-  if (is_new_run || is_new_day) state.replicate = row.replicate, state.trial = row.trial, state.day = day;
-  const std::optional<std::int64_t> ends_s = clock_s(row);
-  std::optional<double> hour;
-  if (ends_s) hour = static_cast<double>(((*ends_s % day_s) + day_s) % day_s) / 3600.0;
-  state.has_clock = state.has_clock || ends_s;
-  for (std::size_t i = 0; i < state.lights.size(); ++i) {
-    const int people = state.people == People::known ? state.lights[i].people_of(row) : 0;
-    state.lit[i] = state.lights[i].add(row, people, hour);
-    state.people_of[i] = state.people == People::known ? people : -1;
-  }
-  return {state.lit, state.people_of, ends_s};
-}
-
-Costs Control::finish() const {
-  Costs costs{state_->rule.name, state_->window_s, {}, {}};
-  for (const Light& light : state_->lights) costs.lights.push_back(light.costs(state_->people));
-  for (const LightSpec& light : state_->rule.lights) {
-    const auto tell_rounding = [&](const char* what, double time, double unit_s, const char* unit) {
-      const double in_rows =
-          static_cast<double>(std::llround(unit_s * time / state_->window_s)) * state_->window_s / unit_s;
-      if (std::abs(in_rows - time) < 1e-6) return;
-      costs.remarks.push_back({Severity::warning, light.where,
-                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) + " s " +
-                                   what + " of " + shortest_number(time) + " " + unit + " is one of " +
-                                   shortest_number(in_rows) + " " + unit});
-    };
-    for (const double delay_min : light.delays_min) tell_rounding("a delay", delay_min, 60.0, "min");
-    if (light.night) tell_rounding("a delay at night", light.night->delay_min, 60.0, "min");
-    tell_rounding("a least_on_min", light.least_on_min, 60.0, "min");
-    if (light.together) tell_rounding("a within_s", light.together->within_s, 1.0, "s");
-    if (light.manual) tell_rounding("a switch_s", light.manual->switch_s, 1.0, "s");
-    if (light.manual) tell_rounding("a grace_s", light.manual->grace_s, 1.0, "s");
-    if (light.wave_s) tell_rounding("a wave_s", *light.wave_s, 1.0, "s");
-    const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
-    if (wants_clock && !state_->has_clock) {
-      costs.remarks.push_back(
-          {Severity::warning, light.where,
-           "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
-    }
-    if (!light.area.empty() && light.sensors.empty() && state_->n_areas > 1) {
-      costs.remarks.push_back(
-          {Severity::warning, light.where,
-           "light '" + light.id + "': the sensors of all areas switch it; name its `sensors`, or say --scene"});
-    }
-  }
-  return costs;
-}
-
 // Which delay to take.
-
-namespace {
 
 constexpr double days_a_week = 7.0;
 
@@ -713,27 +569,9 @@ std::string without_people(const LightCosts& light) {
          (other != nullptr ? "; at " + minutes(*other) + " " + costs(*other) : "") + ".";
 }
 
-}  // namespace
-
-Advice advise(const LightCosts& light) {
-  using Ground = Advice::Ground;
-  const std::string name = light.id + ": ";
-  if (!(light.known_days > 0.0)) return {Ground::nobody_came, {}, name + "nothing is known: no delay can be judged."};
-  if (light.people == People::unknown) return {Ground::unknown_people, {}, name + without_people(light)};
-  if (!(light.occupied_h > 0.0)) return {Ground::nobody_came, {}, name + "nobody came: no delay can be judged."};
-  const auto is_below = [&](auto rate) {
-    return [&light, rate](const DelayCosts& at) { return rate(light, at) < light.at_most_a_week; };
-  };
-  if (const DelayCosts* at = first_of_rest(light, is_below(at_most_a_week)))
-    return {Ground::shown, at->delay_min, name + shown(light, *at)};
-  if (const DelayCosts* at = first_of_rest(light, is_below(a_week)))
-    return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at)};
-  return {Ground::no_delay, {}, name + no_delay(light)};
-}
-
 // Lights of a scene's areas.
 
-RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
+RuleSpec rule_of_areas(const SceneSpec& scene, const std::string& name, std::vector<Issue>& remarks) {
   RuleSpec rule{name, {}};
   const Areas areas(scene);
   if (areas.empty()) rule.lights.emplace_back();
@@ -754,13 +592,217 @@ RuleSpec rule_of(const SceneSpec& scene, const std::string& name, std::vector<Is
   return rule;
 }
 
-void name_sensors(RuleSpec& rule, const SceneSpec& scene) {
-  std::vector<Issue> left_out;  // areas without sensors: told where the light stays without
-  const RuleSpec of_scene = rule_of(scene, rule.name, left_out);
-  for (LightSpec& light : rule.lights) {
+}  // namespace
+
+SwitchRule::SwitchRule(const LightSpec& light, double window_s)
+    : least_on_rows(std::llround(60.0 * light.least_on_min / window_s)), timer(light.timer) {
+  if (light.wave_s) wave_rows = std::llround(*light.wave_s / window_s);
+  if (!light.manual) return;
+  switch_rows = std::llround(light.manual->switch_s / window_s);
+  grace_rows = std::llround(light.manual->grace_s / window_s);
+}
+
+void LightSwitch::go_on() noexcept {
+  lit_ = was_lit_ = true;
+  since_ = counted_from_ = row_;
+  waits_ = 0;
+}
+
+bool LightSwitch::goes_on(const SwitchRule& rule, const Cue& cue) noexcept {
+  if (!rule.switch_rows) {
+    waits_ = cue.occupied && rule.wave_rows ? waits_ + 1 : 0;
+    return cue.moved || (rule.wave_rows && waits_ > *rule.wave_rows);
+  }
+  if (cue.moved && was_lit_ && row_ - since_ <= rule.grace_rows) return true;
+  waits_ = cue.occupied ? waits_ + 1 : 0;
+  return waits_ > *rule.switch_rows;
+}
+
+void LightSwitch::advance(const SwitchRule& rule, const Cue& cue, std::int64_t delay_rows) {
+  ++row_;
+  if (cue.is_open && latched_) counted_from_ = row_;
+  latched_ = !cue.is_open && (latched_ || cue.is_behind);
+  if (!lit_) {
+    if (goes_on(rule, cue)) go_on();
+    return;
+  }
+  const bool is_over = row_ - counted_from_ > delay_rows;
+  if (cue.moved && (rule.timer == Timer::restarts || is_over)) counted_from_ = row_;
+  if (latched_ || row_ - counted_from_ <= delay_rows || row_ - since_ < rule.least_on_rows) return;
+  lit_ = false;
+  since_ = row_;
+}
+
+const DelayCosts& LightCosts::at(double delay_min) const {
+  const auto found = std::ranges::find(by_delay, delay_min, &DelayCosts::delay_min);
+  if (found == by_delay.end())
+    throw Error(ErrorCode::usage, "light '" + id + "': no delay of " + std::to_string(delay_min) + " min");
+  return *found;
+}
+
+double LightCosts::a_day(double sum) const { return known_days > 0.0 ? sum / known_days : 0.0; }
+
+struct Control::State {
+  RuleSpec rule;
+  double window_s;
+  People people;
+  std::size_t n_areas;
+  std::vector<Light> lights;
+  std::vector<std::uint8_t> lit{};
+  std::vector<std::int32_t> people_of{};
+  std::optional<int> replicate{};  ///< none: a run begins
+  std::string trial{}, day{};
+  bool has_clock = false;
+  std::int64_t n_missing = 0;
+};
+
+Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People people)
+    : state_(new State{std::move(rule), window_s, people, columns.areas.size(), {}}) {
+  Diagnostics faults;
+  if (!(window_s > 0.0)) faults.error({state_->rule.name}, "expected rows of more than 0 s");
+  for (const LightSpec& light : state_->rule.lights) {
+    Columns own = columns_for(light, columns, faults);
+    if (people == People::unknown && (light.manual || light.wave_s)) {
+      faults.error(light.where, "light '" + light.id + "': " + (light.manual ? "manual" : "wave_s") +
+                                    " goes by who is in the dark, and the rows have no people");
+    }
+    if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s);
+  }
+  faults.throw_if_errors();
+  state_->lit.resize(state_->lights.size());
+  state_->people_of.resize(state_->lights.size());
+}
+Control::~Control() = default;
+Control::Control(Control&&) noexcept = default;
+
+void Control::begin_run() noexcept { state_->replicate.reset(); }
+void Control::note_missing(std::int64_t n_rows) noexcept { state_->n_missing += n_rows; }
+
+LitRow Control::add(const Sample& row, std::string_view day) {
+  State& state = *state_;
+  const bool is_new_run = row.replicate != state.replicate || row.trial != state.trial;
+  const bool is_new_day = day.empty() ? is_new_run || !state.day.empty() : day != state.day;
+  for (Light& light : state.lights) {
+    if (is_new_run) light.begin();
+    if (is_new_day) light.begin_day(day.empty() ? DayKind::run : DayKind::date);
+  }
+  if (is_new_run || is_new_day) state.replicate = row.replicate, state.trial = row.trial, state.day = day;
+  const std::optional<std::int64_t> ends_s = clock_s(row);
+  std::optional<double> hour;
+  if (ends_s) hour = static_cast<double>(((*ends_s % day_s) + day_s) % day_s) / 3600.0;
+  state.has_clock = state.has_clock || ends_s;
+  for (std::size_t i = 0; i < state.lights.size(); ++i) {
+    const int people = state.people == People::known ? state.lights[i].people_of(row) : 0;
+    state.lit[i] = state.lights[i].add(row, people, hour);
+    state.people_of[i] = state.people == People::known ? people : -1;
+  }
+  return {state.lit, state.people_of, ends_s};
+}
+
+Costs Control::finish() const {
+  Costs costs{state_->rule.name, state_->window_s, {}, {}};
+  for (const Light& light : state_->lights) costs.lights.push_back(light.costs(state_->people));
+  for (const LightSpec& light : state_->rule.lights) {
+    const auto tell_rounding = [&](const char* what, double time, double unit_s, const char* unit) {
+      const double in_rows =
+          static_cast<double>(std::llround(unit_s * time / state_->window_s)) * state_->window_s / unit_s;
+      if (std::abs(in_rows - time) < 1e-6) return;
+      costs.remarks.push_back({Severity::warning, light.where,
+                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) + " s " +
+                                   what + " of " + shortest_number(time) + " " + unit + " is one of " +
+                                   shortest_number(in_rows) + " " + unit});
+    };
+    for (const double delay_min : light.delays_min) tell_rounding("a delay", delay_min, 60.0, "min");
+    if (light.night) tell_rounding("a delay at night", light.night->delay_min, 60.0, "min");
+    tell_rounding("a least_on_min", light.least_on_min, 60.0, "min");
+    if (light.together) tell_rounding("a within_s", light.together->within_s, 1.0, "s");
+    if (light.manual) tell_rounding("a switch_s", light.manual->switch_s, 1.0, "s");
+    if (light.manual) tell_rounding("a grace_s", light.manual->grace_s, 1.0, "s");
+    if (light.wave_s) tell_rounding("a wave_s", *light.wave_s, 1.0, "s");
+    const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
+    if (wants_clock && !state_->has_clock) {
+      costs.remarks.push_back(
+          {Severity::warning, light.where,
+           "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
+    }
+    if (!light.area.empty() && light.sensors.empty() && state_->n_areas > 1) {
+      costs.remarks.push_back(
+          {Severity::warning, light.where,
+           "light '" + light.id + "': the sensors of all areas switch it; name its `sensors`, or say --scene"});
+    }
+  }
+  if (state_->n_missing > 0) {
+    costs.remarks.push_back({Severity::warning,
+                             {},
+                             counted(static_cast<std::size_t>(state_->n_missing), "row") + " of " +
+                                 shortest_number(state_->window_s) +
+                                 " s are missing between those that are there: nothing is known of them"});
+  }
+  if (state_->people == People::unknown)
+    costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
+  return costs;
+}
+
+Advice advise(const LightCosts& light) {
+  using Ground = Advice::Ground;
+  const std::string name = light.id + ": ";
+  if (!(light.known_days > 0.0)) return {Ground::nobody_came, {}, name + "nothing is known: no delay can be judged."};
+  if (light.people == People::unknown) return {Ground::unknown_people, {}, name + without_people(light)};
+  if (!(light.occupied_h > 0.0)) return {Ground::nobody_came, {}, name + "nobody came: no delay can be judged."};
+  const auto is_below = [&](auto rate) {
+    return [&light, rate](const DelayCosts& at) { return rate(light, at) < light.at_most_a_week; };
+  };
+  if (const DelayCosts* at = first_of_rest(light, is_below(at_most_a_week)))
+    return {Ground::shown, at->delay_min, name + shown(light, *at)};
+  if (const DelayCosts* at = first_of_rest(light, is_below(a_week)))
+    return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at)};
+  return {Ground::no_delay, {}, name + no_delay(light)};
+}
+
+RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,
+                  std::vector<Issue>& remarks) {
+  if (scene == nullptr) return given ? std::move(*given) : RuleSpec{"any sensor", {{}}};
+  std::vector<Issue> left_out;  // areas without sensors: of a rule they are told where the light stays without
+  RuleSpec of_scene = rule_of_areas(*scene, name, given ? left_out : remarks);
+  if (!given) return of_scene;
+  for (LightSpec& light : given->lights) {
     const auto same = std::ranges::find(of_scene.lights, light.area, &LightSpec::area);
     if (light.sensors.empty() && !light.area.empty() && same != of_scene.lights.end()) light.sensors = same->sensors;
   }
+  return std::move(*given);
+}
+
+std::vector<Issue> deaf_seats(const RuleSpec& rule, const Model& model) {
+  const SceneSpec& scene = model.scene();
+  const Areas areas(scene);
+  const sim::CompiledStudy& study = model.compiled();
+  const WorkReport work = studies::watch_sitters(studies::room_of(study), studies::worker_of(study.trials()));
+  const auto is_here = [&](const std::string& sensor) {
+    return std::ranges::find(scene.sensors, sensor, &SensorSpec::id) != scene.sensors.end();
+  };
+  std::vector<Issue> remarks;
+  for (const LightSpec& light : rule.lights) {
+    if (!std::ranges::all_of(light.sensors, is_here)) continue;  // the rows are of other sensors than the scene's
+    const auto switches = [&](const SensorSpec& sensor) {
+      return light.sensors.empty() || std::ranges::find(light.sensors, sensor.id) != light.sensors.end();
+    };
+    std::vector<std::string> unnoticed;
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
+      const SeatSpec& place = *std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);
+      if (!light.area.empty() && areas.name_at(floor_point(place.world_from_seat.origin)) != light.area) continue;
+      bool is_noticed = false;
+      for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+        is_noticed = is_noticed || (switches(scene.sensors[i]) && work.notice(seat, i).seconds > 0);
+      if (!is_noticed) unnoticed.push_back(place.id);
+    }
+    if (unnoticed.empty()) continue;
+    remarks.push_back({Severity::warning,
+                       {scene.name},
+                       "light '" + light.id + "': none of its sensors notices somebody at work in " +
+                           joined(unnoticed, ", ") +
+                           ": who is alone there sits in the dark at any delay; `pirsim check` says why"});
+  }
+  return remarks;
 }
 
 namespace {

@@ -17,11 +17,6 @@ namespace {
 
 constexpr int decimals = 6;
 
-struct CostLine {
-  const LightCosts& light;
-  const DelayCosts& at;
-};
-
 /// Empty where it isn't known.
 Cell number(double value) { return std::isnan(value) ? Cell() : Cell(value); }
 Cell end_of(const Figure& figure, double Interval::*end) {
@@ -69,40 +64,6 @@ constexpr Column<CostLine> costs_by_delay[]{
     {info("longest_wait_s", "the longest of these", "s"),
      [](const CostLine& line) { return number(line.at.longest_wait_s); }},
 };
-
-}  // namespace
-
-std::string to_csv(const Costs& costs) {
-  std::ostringstream text;
-  io::TableWriter<CostLine> csv(text, std::span<const Column<CostLine>>(costs_by_delay));
-  for (const LightCosts& light : costs.lights) {
-    for (const DelayCosts& at : light.by_delay) csv.write({light, at});
-  }
-  return text.str();
-}
-
-// ------------------------------------------------------------------------------------------------------ light by row
-
-LitTable::LitTable(std::ostream& out, const RuleSpec& rule) : out_(out) {
-  constexpr std::size_t which_row = 4;  // columns of rows that say which one it is, the last of them its clock
-  const char* before = "";
-  for (const Column<Sample>& column : columns_of<Sample>().first(which_row)) {
-    out_ << before << column.name;
-    before = ",";
-  }
-  for (const LightSpec& light : rule.lights) out_ << ",lit_" << light.id;
-  for (const LightSpec& light : rule.lights) out_ << ",people_" << light.id;
-  out_ << '\n';
-}
-
-void LitTable::add(const Sample& row, const LitRow& lit) {
-  out_ << row.replicate << ',' << io::csv_field(row.trial) << ',' << io::csv_number(row.time_s) << ',' << row.clock;
-  for (const std::uint8_t bit : lit.lit) out_ << ',' << (bit < 2 ? std::to_string(bit) : "");
-  for (const std::int32_t people : lit.people) out_ << ',' << (people >= 0 ? std::to_string(people) : "");
-  out_ << '\n';
-}
-
-namespace {
 
 std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }
 std::string share(double value) { return percent(value, value < 0.1 ? 1 : 0); }
@@ -362,6 +323,50 @@ io::Table overview(const Costs& costs) {
 
 }  // namespace
 
+std::string to_csv(const Costs& costs) {
+  std::ostringstream text;
+  io::TableWriter<CostLine> csv(text);
+  for (const LightCosts& light : costs.lights) {
+    for (const DelayCosts& at : light.by_delay) csv.write({light, at});
+  }
+  return text.str();
+}
+
+// ------------------------------------------------------------------------------------------------------ light by row
+
+LitTable::LitTable(const std::filesystem::path& file, const RuleSpec& rule)
+    : file_(file), data_(file_.stream(), io::compression_of(file)) {
+  constexpr std::size_t which_row = 4;  // columns of rows that say which one it is, the last of them its clock
+  const char* before = "";
+  for (const Column<Sample>& column : columns_of<Sample>().first(which_row)) {
+    text_ << before << column.name;
+    before = ",";
+  }
+  for (const LightSpec& light : rule.lights) text_ << ",lit_" << light.id;
+  for (const LightSpec& light : rule.lights) text_ << ",people_" << light.id;
+  text_ << '\n';
+}
+
+void LitTable::add(const Sample& row, const LitRow& lit) {
+  text_ << row.replicate << ',' << io::csv_field(row.trial) << ',' << io::csv_number(row.time_s) << ',' << row.clock;
+  for (const std::uint8_t bit : lit.lit) text_ << ',' << (bit < 2 ? std::to_string(bit) : "");
+  for (const std::int32_t people : lit.people) text_ << ',' << (people >= 0 ? std::to_string(people) : "");
+  text_ << '\n';
+  constexpr std::streamoff piece = 1 << 16;
+  if (text_.tellp() > piece) flush();
+}
+
+void LitTable::flush() {
+  data_.write(text_.str());
+  text_.str({});
+}
+
+void LitTable::finish() {
+  flush();
+  data_.finish();
+  file_.commit();
+}
+
 LitDays::LitDays(const RuleSpec& rule, double window_s) : window_s_(window_s) {
   for (const LightSpec& light : rule.lights) names_.push_back(light.id);
 }
@@ -490,3 +495,8 @@ std::string to_text(const Costs& costs) {
 }
 
 }  // namespace pirsim::control
+
+template <>
+std::span<const pirsim::Column<pirsim::control::CostLine>> pirsim::columns_of() {
+  return control::costs_by_delay;
+}

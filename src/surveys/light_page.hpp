@@ -2,26 +2,34 @@
 #pragma once
 
 #include <cstdint>
-#include <ostream>
+#include <filesystem>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "files/disk/compression.hpp"
+#include "files/disk/file.hpp"
 #include "pirsim/control.hpp"
 #include "show/report.hpp"
 
 namespace pirsim::control {
 
-/// A row a row: each light, and the people of its area.
+/// A row a row, in a file: each light, and the people of its area. Throws Error(io).
 class LitTable {
  public:
-  /// out: outlives it.
-  LitTable(std::ostream& out, const RuleSpec& rule);
+  LitTable(const std::filesystem::path& file, const RuleSpec& rule);
   void add(const Sample& row, const LitRow& lit);
+  /// Puts the file in its place.
+  void finish();
 
  private:
-  std::ostream& out_;
+  void flush();
+
+  io::AtomicFile file_;
+  io::DataWriter data_;
+  std::ostringstream text_;
 };
 
 // The page about light: curves over the delay, when it is lit, the worst moments.

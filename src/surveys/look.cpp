@@ -26,18 +26,46 @@
 #include "show/run_page.hpp"
 #include "surveys/picture.hpp"
 
-// What the functions of pirsim/look.hpp share.
-
 namespace pirsim::studies {
+namespace {
+
+// What pictures, pages and films share.
 
 /// Throws Error(usage).
-void require_run(const Model& model, std::uint32_t run);
-/// Throws Error(usage) that names the argument.
-void require(const char* what, double value, const NumberRange& range);
-/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
-[[nodiscard]] std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names);
+void require_run(const Model& model, std::uint32_t run) {
+  if (run < model.n_runs()) return;
+  throw Error(ErrorCode::usage, "run " + std::to_string(run) + ": the study has " + std::to_string(model.n_runs()) +
+                                    " runs, numbered from 0");
+}
 
-namespace {
+/// Throws Error(usage) that names the argument.
+void require(const char* what, double value, const NumberRange& range) {
+  if (range.holds(value)) return;
+  std::ostringstream got;
+  got << what << ": expected " << range.text() << ", got " << value;
+  throw Error(ErrorCode::usage, got.str());
+}
+
+/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
+std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
+  std::vector<std::size_t> indices;
+  for (const std::string& name : names) {
+    if (name == "none") continue;
+    bool found = name == "all";
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (name != "all" && name != known[i]) continue;
+      indices.push_back(i);
+      found = true;
+    }
+    if (!found)
+      throw Error(ErrorCode::usage, "beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
+  }
+  return indices;
+}
+
+// Films.
 
 io::ExportedPerson without_keys(const sim::Actor& actor) {
   io::ExportedPerson person{actor.person().spec.id, {}, {}};
@@ -97,77 +125,12 @@ class Peaks {
   std::vector<double> peaks_;
 };
 
-}  // namespace
-
-double expected_bytes(std::size_t n_people, double seconds, double keys_per_s) {
-  // As the glTF has them: a time; of each person a scale, of each part a place and a rotation, in single precision.
-  constexpr double time_bytes = 4.0, person_bytes = 12.0, part_bytes = 12.0 + 16.0;
-  return seconds * keys_per_s *
-         (time_bytes + static_cast<double>(n_people) * (person_bytes + body::n_parts * part_bytes));
-}
-
-Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
-  const SensingInForce& sensing = model.compiled().sensing();
-  const int rate = sensing.tick_rate_hz;
-  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
-  const double window_s = model.tick_s() * sensing.ticks_per_window;
-  const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
-
-  State state(model, run);
-  Film result;
-  result.run.title = model.script().name + ", trial " + model.trial_of(run);
-  result.run.meshes = model.compiled().scene().meshes;
-  for (const std::size_t sensor : spec.beams_of) result.run.beams.push_back(beams(model, state, sensor));
-  const auto end_window = [&] {
-    if (spec.simulated) spec.simulated(window_s);
-  };
-  while (!state.finished() && time_s(state) + window_s <= spec.from_s) {
-    // As in a run without a film, what nobody is in is passed over.
-    if (!sim::pass_empty_window(model.compiled(), state.run_state())) step(model, state);
-    end_window();
-  }
-
-  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
-  for (const sim::Actor& actor : actors) {
-    result.run.people.push_back(without_keys(actor));
-    result.run.people.back().number = result.run.people.size() - 1;
-  }
-  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
-  for (std::size_t i = 0; i < leaves.size(); ++i)
-    result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
-  result.signals_v.resize(model.scene().sensors.size());
-  Peaks peaks(result.signals_v.size());
-  const std::int64_t first_tick = state.tick();
-  while (true) {
-    peaks.look(state);
-    const bool ends = state.finished() || time_s(state) >= spec.to_s;
-    if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
-      result.run.key_times_s.push_back(time_s(state));
-      for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
-      for (std::size_t i = 0; i < leaves.size(); ++i)
-        result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
-      result.active_zones.push_back(members(state.zones()));
-      peaks.take(state, result.signals_v);
-    }
-    if (ends) return result;
-    if (!step_tick(model, state)) continue;
-    result.rows.push_back(state.sample());
-    end_window();
-  }
-}
-
-}  // namespace pirsim::studies
-
 // The page that plays a run.
-
-namespace pirsim {
-namespace studies {
-namespace {
 
 /// Of a longer run a page shows a part, unless its user asks for more: it would be large and take long to load.
 constexpr double longest_unasked_s = 1200.0;
 
-struct Stretch {
+struct ShownPart {
   double from_s = 0.0, to_s = 0.0;
   double run_s = 0.0;  ///< of the whole run
 };
@@ -175,7 +138,7 @@ struct Stretch {
 int bits_set(const Sample& row) { return std::accumulate(row.bits.begin(), row.bits.end(), 0); }
 
 /// That in which sensors see motion most often, the earliest of equals.
-Stretch busiest(const std::vector<Sample>& rows, double window_s) {
+ShownPart busiest(const std::vector<Sample>& rows, double window_s) {
   const auto length = std::clamp<std::size_t>(static_cast<std::size_t>(longest_unasked_s / window_s), 1, rows.size());
   int motion = 0, most = -1;
   std::size_t best_end = length;
@@ -207,9 +170,9 @@ std::optional<double> known_end_s(const Model& model, std::uint32_t run) {
   return end_of(window);
 }
 
-Stretch chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock, double end_s,
-                       double window_s) {
-  Stretch stretch{request.from_s.value_or(0.0), end_s};
+ShownPart chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock, double end_s,
+                         double window_s) {
+  ShownPart stretch{request.from_s.value_or(0.0), end_s};
   if (request.to_s) {
     stretch.to_s = std::min(end_s, *request.to_s);
     if (!request.from_s) stretch.from_s = std::max(0.0, stretch.to_s - longest_unasked_s);
@@ -279,7 +242,7 @@ io::PageMap page_map(const SceneSpec& scene, const CoverageSpec& spec) {
   return page;
 }
 
-io::RunPage run_page(const Model& model, const PageRequest& request, const Stretch& stretch) {
+io::RunPage run_page(const Model& model, const PageRequest& request, const ShownPart& stretch) {
   std::vector<std::size_t> all_sensors(model.scene().sensors.size());
   std::iota(all_sensors.begin(), all_sensors.end(), 0);
   Film film =
@@ -328,42 +291,19 @@ std::vector<Sample> rows_of(const Model& model, const PageRequest& request) {
 }
 
 /// A whole run is simulated beforehand only where that tells what to show.
-Stretch find_stretch(const Model& model, const PageRequest& request, double window_s) {
+ShownPart find_stretch(const Model& model, const PageRequest& request, double window_s) {
   const std::optional<double> known_s = known_end_s(model, request.run);
   std::vector<Sample> rows;
   if (!known_s || wants_busiest(request, *known_s)) rows = rows_of(model, request);
   const double end_s = known_s ? *known_s : rows.back().time_s;
-  Stretch stretch = wants_busiest(request, end_s)
-                        ? busiest(rows, window_s)
-                        : chosen_stretch(request, model.compiled().clock_of(request.run), end_s, window_s);
+  ShownPart stretch = wants_busiest(request, end_s)
+                          ? busiest(rows, window_s)
+                          : chosen_stretch(request, model.compiled().clock_of(request.run), end_s, window_s);
   stretch.run_s = end_s;
   return stretch;
 }
 
-}  // namespace
-}  // namespace studies
-
-Page page_of(const Model& model, const PageRequest& request) {
-  using namespace studies;
-  require_run(model, request.run);
-  require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
-  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
-  const Stretch stretch = find_stretch(model, request, window_s);
-  io::RunPage page = run_page(model, request, stretch);
-  page.run_s = stretch.run_s;
-  page.window_s = window_s;
-  if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
-  std::ostringstream text;
-  io::write_run_page(text, page);
-  const auto& keys = page.run.key_times_s;
-  const bool is_busiest_part = page.run_s > longest_unasked_s && !request.from_s && !request.to_s;
-  return {std::move(text).str(), page.about, keys.front(), keys.back(), page.run_s, is_busiest_part};
-}
-
-// Pictures and films of a run for who asks by name and number.
-
-namespace studies {
-namespace {
+// Pictures.
 
 double time_s(const Model& model, const State& state) { return static_cast<double>(state.tick()) * model.tick_s(); }
 
@@ -411,38 +351,83 @@ std::vector<Mark> marks_named(const std::vector<std::string>& words) {
 
 }  // namespace
 
-void require_run(const Model& model, std::uint32_t run) {
-  if (run < model.n_runs()) return;
-  throw Error(ErrorCode::usage, "run " + std::to_string(run) + ": the study has " + std::to_string(model.n_runs()) +
-                                    " runs, numbered from 0");
+double expected_bytes(std::size_t n_people, double seconds, double keys_per_s) {
+  // As the glTF has them: a time; of each person a scale, of each part a place and a rotation, in single precision.
+  constexpr double time_bytes = 4.0, person_bytes = 12.0, part_bytes = 12.0 + 16.0;
+  return seconds * keys_per_s *
+         (time_bytes + static_cast<double>(n_people) * (person_bytes + body::n_parts * part_bytes));
 }
 
-void require(const char* what, double value, const NumberRange& range) {
-  if (range.holds(value)) return;
-  std::ostringstream got;
-  got << what << ": expected " << range.text() << ", got " << value;
-  throw Error(ErrorCode::usage, got.str());
-}
+Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
+  const SensingInForce& sensing = model.compiled().sensing();
+  const int rate = sensing.tick_rate_hz;
+  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
+  const double window_s = model.tick_s() * sensing.ticks_per_window;
+  const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
 
-std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
-  std::vector<std::size_t> indices;
-  for (const std::string& name : names) {
-    if (name == "none") continue;
-    bool found = name == "all";
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      if (name != "all" && name != known[i]) continue;
-      indices.push_back(i);
-      found = true;
-    }
-    if (!found)
-      throw Error(ErrorCode::usage, "beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
+  State state(model, run);
+  Film result;
+  result.run.title = model.script().name + ", trial " + model.trial_of(run);
+  result.run.meshes = model.compiled().scene().meshes;
+  for (const std::size_t sensor : spec.beams_of) result.run.beams.push_back(beams(model, state, sensor));
+  const auto end_window = [&] {
+    if (spec.simulated) spec.simulated(window_s);
+  };
+  while (!state.finished() && time_s(state) + window_s <= spec.from_s) {
+    // As in a run without a film, what nobody is in is passed over.
+    if (!sim::pass_empty_window(model.compiled(), state.run_state())) step(model, state);
+    end_window();
   }
-  return indices;
+
+  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
+  for (const sim::Actor& actor : actors) {
+    result.run.people.push_back(without_keys(actor));
+    result.run.people.back().number = result.run.people.size() - 1;
+  }
+  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
+  result.signals_v.resize(model.scene().sensors.size());
+  Peaks peaks(result.signals_v.size());
+  const std::int64_t first_tick = state.tick();
+  while (true) {
+    peaks.look(state);
+    const bool ends = state.finished() || time_s(state) >= spec.to_s;
+    if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
+      result.run.key_times_s.push_back(time_s(state));
+      for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
+      for (std::size_t i = 0; i < leaves.size(); ++i)
+        result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
+      result.active_zones.push_back(members(state.zones()));
+      peaks.take(state, result.signals_v);
+    }
+    if (ends) return result;
+    if (!step_tick(model, state)) continue;
+    result.rows.push_back(state.sample());
+    end_window();
+  }
 }
 
-}  // namespace studies
+}  // namespace pirsim::studies
+
+namespace pirsim {
+
+Page page_of(const Model& model, const PageRequest& request) {
+  using namespace studies;
+  require_run(model, request.run);
+  require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
+  const ShownPart stretch = find_stretch(model, request, window_s);
+  io::RunPage page = run_page(model, request, stretch);
+  page.run_s = stretch.run_s;
+  page.window_s = window_s;
+  if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
+  std::ostringstream text;
+  io::write_run_page(text, page);
+  const auto& keys = page.run.key_times_s;
+  const bool is_busiest_part = page.run_s > longest_unasked_s && !request.from_s && !request.to_s;
+  return {std::move(text).str(), page.about, keys.front(), keys.back(), page.run_s, is_busiest_part};
+}
 
 Picture picture_of(const Model& model, const PictureRequest& request) {
   studies::require("field_of_view_deg", request.field_of_view_deg, {.min = 1.0, .max = 170.0});

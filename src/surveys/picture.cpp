@@ -29,19 +29,6 @@
 namespace pirsim::studies {
 namespace {
 
-struct MeshExtent {
-  Vec3 lower{1e9}, upper{-1e9};
-};
-
-MeshExtent bounds_of(const TriMesh& mesh) {
-  MeshExtent result;
-  for (const Vec3& p : mesh.positions) {
-    result.lower = glm::min(result.lower, p);
-    result.upper = glm::max(result.upper, p);
-  }
-  return result;
-}
-
 /// (n_positions) of a mesh: pieces that share no corner have different numbers.
 std::vector<std::size_t> pieces_of(const TriMesh& mesh) {
   std::vector<std::size_t> parent(mesh.positions.size());
@@ -107,57 +94,6 @@ void add_wall(const TriMesh& mesh, double floor_height_m, io::RoomPlan& plan) {
   }
   std::ranges::move(section.lines, std::back_inserter(plan.wall_lines));
 }
-
-}  // namespace
-
-MeshRole role_of(const TriMesh& mesh, double floor_height_m) {
-  constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
-  const MeshExtent e = bounds_of(mesh);
-  const Vec3 size = e.upper - e.lower;
-  const bool is_high = e.lower.y >= floor_height_m + wall_height_m;
-  if (is_high && size.y < std::min(size.x, size.z)) return MeshRole::ceiling;
-  if (is_high || size.y > wall_height_m) return MeshRole::wall;
-  return e.upper.y < floor_height_m + floor_thickness_m ? MeshRole::floor : MeshRole::furniture;
-}
-
-io::RoomPlan plan_of(const SceneSpec& scene) {
-  io::RoomPlan plan;
-  plan.outline = scene.floor.loops();
-  for (const TriMesh& mesh : scene.meshes) {
-    const MeshRole role = role_of(mesh, scene.floor.height_m());
-    if (role == MeshRole::furniture) add_pieces(mesh, plan.furniture);
-    if (role == MeshRole::wall) add_wall(mesh, scene.floor.height_m(), plan);
-  }
-  for (const SeatSpec& seat : scene.seats)
-    plan.seats.push_back({seat.id, floor_point(seat.world_from_seat.origin), heading_of(seat.world_from_seat)});
-  for (const EntranceSpec& door : scene.entrances) {
-    const auto jamb = [&](double side) {
-      return floor_point(door.world_from_entrance * Vec3(0.5 * side * door.width_m, 0.0, 0.0));
-    };
-    plan.doors.push_back({door.id, jamb(-1.0), jamb(1.0), {}});
-  }
-  for (const DoorSpec& door : scene.doors) {
-    std::vector<Vec2> sweep = DoorLeaf(door, 1.0).sweep();
-    plan.doors.push_back({door.id, sweep[0], sweep[1], std::move(sweep)});
-  }
-  for (const AreaSpec& area : scene.areas)
-    plan.areas.push_back({area.id, roomiest_point(area.outline), area.outline.loops()});
-  return plan;
-}
-
-io::RoomPlan::Marker marker_of(const SensorSpec& sensor) {
-  return {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)};
-}
-
-std::string signs_of_maps(const SceneSpec& scene) {
-  const std::string signs =
-      "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "
-      "is no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are "
-      "walls, the solid line is the floor's edge.";
-  return scene.areas.empty() ? signs : signs + " Violet dashes are the borders of named areas.";
-}
-
-namespace {
 
 struct MeshLook {
   rt::Surface surface;
@@ -289,19 +225,23 @@ struct Marks {
   std::optional<rt::Beam> scale;
 };
 
+/// The edges of a closed polygon, at a height.
+void add_loop(const std::vector<Vec2>& loop, double y, const rt::Colour& colour, std::vector<rt::Beam>& lines) {
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec2 from = loop[i], to = loop[(i + 1) % loop.size()];
+    lines.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), colour});
+  }
+}
+
 /// From the seat's point the way who sits there faces.
 void mark_seats(const SceneSpec& scene, Marks& marks) {
   constexpr double nose_m = 0.25, above_m = 0.25;
-  for (const SeatSpec& seat : scene.seats) {
-    const Vec3 at = seat.world_from_seat.origin;
-    marks.lines.push_back({seat.world_from_seat * Vec3(0.0, 0.0, -nose_m), at, seat_colour});
-    marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), seat.id, seat_colour});
-  }
-  for (const PlaceSpec& place : scene.places) {
-    const Vec3 at = place.world_from_place.origin;
-    marks.lines.push_back({place.world_from_place * Vec3(0.0, 0.0, -nose_m), at, seat_colour});
-    marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), place.id, seat_colour});
-  }
+  const auto mark = [&](const Frame& world_from_seat, const std::string& id) {
+    marks.lines.push_back({world_from_seat * Vec3(0.0, 0.0, -nose_m), world_from_seat.origin, seat_colour});
+    marks.labels.push_back({world_from_seat.origin + Vec3(0.0, above_m, 0.0), id, seat_colour});
+  };
+  for (const SeatSpec& seat : scene.seats) mark(seat.world_from_seat, seat.id);
+  for (const PlaceSpec& place : scene.places) mark(place.world_from_place, place.id);
 }
 
 /// The threshold, and the way in; what a leaf sweeps.
@@ -314,12 +254,7 @@ void mark_doors(const SceneSpec& scene, Marks& marks) {
     marks.labels.push_back({at(0.0, 0.0), door.id, door_colour});
   }
   for (const DoorSpec& door : scene.doors) {
-    const std::vector<Vec2> sweep = DoorLeaf(door, 1.0).sweep();
-    const double y = door.world_from_door.origin.y + above_m;
-    for (std::size_t i = 0; i < sweep.size(); ++i) {
-      const Vec2 from = sweep[i], to = sweep[(i + 1) % sweep.size()];
-      marks.lines.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), door_colour});
-    }
+    add_loop(DoorLeaf(door, 1.0).sweep(), door.world_from_door.origin.y + above_m, door_colour, marks.lines);
     const Vec3 above = door.world_from_door * Vec3(0.0, door.height_m + 0.1, 0.0);
     marks.labels.push_back({above, door.id, door_colour});
   }
@@ -330,12 +265,7 @@ void mark_areas(const SceneSpec& scene, Marks& marks) {
   constexpr double above_m = 0.015;
   const double y = scene.floor.height_m() + above_m;
   for (const AreaSpec& area : scene.areas) {
-    for (const std::vector<Vec2>& loop : area.outline.loops()) {
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Vec2 from = loop[i], to = loop[(i + 1) % loop.size()];
-        marks.lines.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), area_colour});
-      }
-    }
+    for (const std::vector<Vec2>& loop : area.outline.loops()) add_loop(loop, y, area_colour, marks.lines);
     const Vec2 middle = roomiest_point(area.outline);
     marks.labels.push_back({Vec3(middle.x, y, middle.y), area.id, area_colour});
   }
@@ -396,12 +326,7 @@ std::vector<rt::Beam> unseen_floor(const SceneSpec& scene) {
   if (is_seen) return {};
   constexpr rt::Colour colour{0.30F, 0.28F, 0.25F};
   std::vector<rt::Beam> edges;
-  for (const std::vector<Vec2>& loop : scene.floor.loops()) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Vec2 from = loop[i], to = loop[(i + 1) % loop.size()];
-      edges.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), colour});
-    }
-  }
+  for (const std::vector<Vec2>& loop : scene.floor.loops()) add_loop(loop, y, colour, edges);
   return edges;
 }
 
@@ -417,12 +342,6 @@ Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& 
     if (mark == Mark::scale) mark_scale(scene, marks);
   }
   return marks;
-}
-
-/// Of texts, in pixels, so that a larger picture shows the same.
-double text_size(const PictureSpec& spec) {
-  constexpr double size_px = 15.0, reference_height = 720.0;
-  return std::max(9.0, size_px * spec.height / reference_height);
 }
 
 /// Darker than the lines, so that it can be read; light colours still more so.
@@ -441,8 +360,11 @@ struct Key {
   [[nodiscard]] double sign_px() const { return 1.6 * size_px; }
 };
 
-Key key_of(const PictureSpec& spec, const SceneSpec& scene, const Marks& marks, double size_px) {
+Key key_of(const PictureSpec& spec, const SceneSpec& scene, const Marks& marks) {
   constexpr std::size_t most_people = 8;  // whose colours differ
+  constexpr double reference_px = 15.0, reference_height = 720.0;
+  const double size_px =
+      std::max(9.0, reference_px * spec.height / reference_height);  // a larger picture shows the same
   const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
   const double height = spec.height;
   Key key{{}, 1.45 * size_px, size_px, {Vec2(0.0, height), Vec2(0.0, height)}};
@@ -541,6 +463,57 @@ rt::Camera dolls_house_camera(const SceneSpec& scene, const Marks& marks, const 
 
 }  // namespace
 
+MeshRole role_of(const TriMesh& mesh, double floor_height_m) {
+  constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
+  Vec3 lower(1e9), upper(-1e9);
+  for (const Vec3& p : mesh.positions) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  const Vec3 size = upper - lower;
+  const bool is_high = lower.y >= floor_height_m + wall_height_m;
+  if (is_high && size.y < std::min(size.x, size.z)) return MeshRole::ceiling;
+  if (is_high || size.y > wall_height_m) return MeshRole::wall;
+  return upper.y < floor_height_m + floor_thickness_m ? MeshRole::floor : MeshRole::furniture;
+}
+
+io::RoomPlan plan_of(const SceneSpec& scene) {
+  io::RoomPlan plan;
+  plan.outline = scene.floor.loops();
+  for (const TriMesh& mesh : scene.meshes) {
+    const MeshRole role = role_of(mesh, scene.floor.height_m());
+    if (role == MeshRole::furniture) add_pieces(mesh, plan.furniture);
+    if (role == MeshRole::wall) add_wall(mesh, scene.floor.height_m(), plan);
+  }
+  for (const SeatSpec& seat : scene.seats)
+    plan.seats.push_back({seat.id, floor_point(seat.world_from_seat.origin), heading_of(seat.world_from_seat)});
+  for (const EntranceSpec& door : scene.entrances) {
+    const auto jamb = [&](double side) {
+      return floor_point(door.world_from_entrance * Vec3(0.5 * side * door.width_m, 0.0, 0.0));
+    };
+    plan.doors.push_back({door.id, jamb(-1.0), jamb(1.0), {}});
+  }
+  for (const DoorSpec& door : scene.doors) {
+    std::vector<Vec2> sweep = DoorLeaf(door, 1.0).sweep();
+    plan.doors.push_back({door.id, sweep[0], sweep[1], std::move(sweep)});
+  }
+  for (const AreaSpec& area : scene.areas)
+    plan.areas.push_back({area.id, roomiest_point(area.outline), area.outline.loops()});
+  return plan;
+}
+
+io::RoomPlan::Marker marker_of(const SensorSpec& sensor) {
+  return {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)};
+}
+
+std::string signs_of_maps(const SceneSpec& scene) {
+  const std::string signs =
+      "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "
+      "is no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are "
+      "walls, the solid line is the floor's edge.";
+  return scene.areas.empty() ? signs : signs + " Violet dashes are the borders of named areas.";
+}
+
 std::string_view name(Mark mark) noexcept {
   static constexpr std::array<std::string_view, all_marks.size()> names{"seats",  "doors", "areas", "sensors",
                                                                         "people", "scale", "key"};
@@ -579,7 +552,7 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
                         [](const rt::Beam& beam) { return beam.colour == idle_beam; });
   const Marks marks = marks_of(model, state, spec.marks);
   beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
-  const Key key = key_of(spec, scene, marks, text_size(spec));
+  const Key key = key_of(spec, scene, marks);
   rt::Camera camera = dolls_house_camera(scene, marks, key, spec);
   if (spec.camera) camera.position = *spec.camera;
   if (spec.look_at) camera.target = *spec.look_at;

@@ -87,6 +87,179 @@ PlacementLight told(const LightSums& sums, double window_s) {
   return light;
 }
 
+/// Share of the squares with motion in which two sensors or more see it.
+double overlap_of(const CoverageMap& map) {
+  std::size_t seen = 0, shared = 0;
+  const std::size_t n_sensors = map.sensors.size();
+  for (std::size_t at = 0; at < map.counts.size(); at += n_sensors) {
+    const auto counts = map.counts.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto by =
+        std::count_if(counts, counts + static_cast<std::ptrdiff_t>(n_sensors), [](auto n) { return n > 0; });
+    seen += by > 0 ? 1 : 0;
+    shared += by > 1 ? 1 : 0;
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(seen);
+}
+
+/// Sensors of a map and of the counts at seats that see nothing.
+std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::vector<MotionCount>>& at_seats) {
+  const std::size_t n_sensors = map.sensors.size();
+  std::vector<std::size_t> idle;
+  for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+    bool sees = std::ranges::any_of(at_seats, [&](const auto& counts) { return counts[sensor] > 0; });
+    for (std::size_t at = sensor; at < map.counts.size() && !sees; at += n_sensors) sees = map.counts[at] > 0;
+    if (!sees) idle.push_back(sensor);
+  }
+  return idle;
+}
+
+/// (n_things)
+std::vector<bool> covered_by(const Cover& cover, const Chosen& chosen) {
+  std::vector<bool> is_covered(cover.worth.size());
+  for (const std::size_t candidate : chosen) {
+    for (const std::uint32_t thing : cover.covered[candidate]) is_covered[thing] = true;
+  }
+  return is_covered;
+}
+
+/// The search as NLopt calls it.
+struct Objective {
+  const SceneSpec& scene;
+  const CoverageSpec& coverage;
+  const PlacementSearchSpec& search;
+  unsigned threads;
+  const Tried& tried;
+  int evaluations = 0;
+  double best_area = -1.0;
+  std::vector<double> best;
+  std::exception_ptr fault{};  ///< which NLopt would replace by its own
+
+  double area(const std::vector<double>& shares) {
+    ++evaluations;
+    tried();
+    const double seen = score(scene, coverage, sensors_along(search, shares, ""), threads).seen_area_m2;
+    if (seen > best_area) {
+      best_area = seen;
+      best = shares;
+    }
+    return seen;
+  }
+};
+
+void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations) {
+  if (evaluations < 1) return;
+  nlopt::opt optimiser(algorithm, static_cast<unsigned>(objective.search.n_sensors));
+  optimiser.set_lower_bounds(0.0);
+  optimiser.set_upper_bounds(1.0);
+  optimiser.set_maxeval(evaluations);
+  optimiser.set_xtol_abs(1e-3);
+  optimiser.set_initial_step(0.1);
+  optimiser.set_max_objective(
+      [](const std::vector<double>& shares, std::vector<double>&, void* data) {
+        auto& called = *static_cast<Objective*>(data);
+        try {
+          return called.area(shares);
+        } catch (...) {
+          called.fault = std::current_exception();
+          throw nlopt::forced_stop();
+        }
+      },
+      &objective);
+  std::vector<double> shares = objective.best;
+  double area = 0.0;
+  try {
+    optimiser.optimize(shares, area);
+  } catch (const nlopt::roundoff_limited&) {
+    // The best so far is kept: no further progress is possible.
+  } catch (const nlopt::forced_stop&) {
+    std::rethrow_exception(objective.fault);
+  }
+}
+
+std::vector<double> even_shares(int n) {
+  std::vector<double> shares;
+  for (int i = 0; i < n; ++i) shares.push_back((i + 0.5) / n);
+  return shares;
+}
+
+/// No number of squares is worth a seat that is surely noticed, and no number of these a seat that is noticed.
+std::vector<std::uint64_t> worth(std::size_t n_seats, std::size_t n_squares) {
+  const std::uint64_t surely = n_squares + 1, noticed = (n_seats + 1) * surely;
+  std::vector<std::uint64_t> worth(n_seats, noticed);
+  worth.resize(2 * n_seats, surely);
+  worth.resize(2 * n_seats + n_squares, 1);
+  return worth;
+}
+
+/// Adds what the sensors from `first` on notice.
+void add_noticed(Cover& cover, std::size_t first, const WorkReport& work, const CoverageMap& map) {
+  const std::size_t n_sensors = map.sensors.size();
+  for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+    std::vector<std::uint32_t>& covered = cover.covered[first + sensor];
+    std::uint32_t thing = 0;
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
+      if (work.notice(seat, sensor).seconds > 0) covered.push_back(thing);
+    }
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
+      if (work.notice(seat, sensor).is_sure()) covered.push_back(thing);
+    }
+    for (std::size_t at = sensor; at < map.counts.size(); at += n_sensors, ++thing) {
+      if (map.counts[at] > 0) covered.push_back(thing);
+    }
+  }
+  cover.worth = worth(work.seats.size(), map.counts.size() / n_sensors);
+}
+
+/// Even spacing and what was found, judged.
+PlacementSearch judged(const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search,
+                       const std::vector<double>& found, int evaluations, unsigned threads) {
+  const std::vector<double> even = even_shares(search.n_sensors);
+  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
+          score(scene, coverage, sensors_along(search, found, "found"), threads), evaluations};
+}
+
+PlacementSearch search_by_area(const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search,
+                               unsigned threads, const Tried& tried) {
+  Objective objective{scene, coverage, search, threads, tried, 0, -1.0, {}};
+  static_cast<void>(objective.area(even_shares(search.n_sensors)));
+  maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
+  maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);
+  return judged(scene, coverage, search, objective.best, objective.evaluations, threads);
+}
+
+/// All places hang in one room at once: the people are simulated once, and each place has its own column of motion.
+Chosen best_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+                     const std::vector<double>& shares, const Chosen& start, unsigned threads, const Tried& tried) {
+  std::size_t n_told = 0;
+  const auto tell = [&](std::size_t n_done, std::size_t n_runs) {
+    for (; n_told < (shares.size() - start.size()) * n_done / n_runs; ++n_told) tried();
+  };
+  const LightRows rows =
+      light_rows(with_set(scene, sensors_along(search, shares, "")), *spec.light, spec.coverage.sensing, threads, tell);
+  LightSearch by_light(rows, *spec.light);
+  return best_of(by_light, start);
+}
+
+/// Chooses among single places, of which the first are those of even spacing.
+PlacementSearch search_among_places(const SceneSpec& scene, const PlacementSpec& spec,
+                                    const PlacementSearchSpec& search, unsigned threads, const Tried& tried) {
+  std::vector<double> shares = even_shares(search.n_sensors);
+  Chosen chosen(shares.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  const std::vector<double> places = even_shares(search.evaluations);
+  shares.insert(shares.end(), places.begin(), places.end());
+  if (spec.by == PlacementAim::seats) {
+    const Cover cover = cover_of(scene, spec, search, shares, threads, tried);
+    chosen = best_of(cover, chosen);
+  } else {
+    chosen = best_by_light(scene, spec, search, shares, chosen, threads, tried);
+  }
+  std::vector<double> found;
+  for (const std::size_t i : chosen) found.push_back(shares[i]);
+  std::ranges::sort(found);
+  return judged(scene, spec.coverage, search, found, search.evaluations, threads);
+}
+
 }  // namespace
 
 LightRows light_rows(const SceneSpec& scene, const PlacementLightSpec& light, const SensingSpec& sensing,
@@ -164,36 +337,6 @@ LightScore score_light(const LightRows& rows, const PlacementLightSpec& light) {
   score.all.sensors = rows.sensors;
   return score;
 }
-
-namespace {
-
-/// Share of the squares with motion in which two sensors or more see it.
-double overlap_of(const CoverageMap& map) {
-  std::size_t seen = 0, shared = 0;
-  const std::size_t n_sensors = map.sensors.size();
-  for (std::size_t at = 0; at < map.counts.size(); at += n_sensors) {
-    const auto counts = map.counts.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto by =
-        std::count_if(counts, counts + static_cast<std::ptrdiff_t>(n_sensors), [](auto n) { return n > 0; });
-    seen += by > 0 ? 1 : 0;
-    shared += by > 1 ? 1 : 0;
-  }
-  return seen == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(seen);
-}
-
-/// Sensors of a map and of the counts at seats that see nothing.
-std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::vector<MotionCount>>& at_seats) {
-  const std::size_t n_sensors = map.sensors.size();
-  std::vector<std::size_t> idle;
-  for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
-    bool sees = std::ranges::any_of(at_seats, [&](const auto& counts) { return counts[sensor] > 0; });
-    for (std::size_t at = sensor; at < map.counts.size() && !sees; at += n_sensors) sees = map.counts[at] > 0;
-    if (!sees) idle.push_back(sensor);
-  }
-  return idle;
-}
-
-}  // namespace
 
 SceneSpec with_set(SceneSpec scene, const SensorSetSpec& set) {
   if (!set.sensors.empty()) scene.sensors = set.sensors;
@@ -277,6 +420,100 @@ std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores, Placement
     return a.blind_seats.size() < b.blind_seats.size();
   });
   return scores;
+}
+
+std::uint64_t Cover::worth_of(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  return std::inner_product(is_covered.begin(), is_covered.end(), worth.begin(), std::uint64_t{0});
+}
+
+std::size_t Cover::best_addition(const Chosen& chosen) const {
+  const std::vector<bool> is_covered = covered_by(*this, chosen);
+  std::vector<std::uint64_t> gains;  // 0: is chosen; else by 1 more
+  for (std::size_t candidate = 0; candidate < covered.size(); ++candidate) {
+    const bool is_chosen = std::ranges::find(chosen, candidate) != chosen.end();
+    std::uint64_t& gain = gains.emplace_back(is_chosen ? 0 : 1);
+    for (std::size_t i = 0; i < covered[candidate].size() && !is_chosen; ++i) {
+      const std::uint32_t thing = covered[candidate][i];
+      gain += is_covered[thing] ? 0 : worth[thing];
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
+}
+
+const LightSums& LightSearch::of_area(std::size_t area, const Chosen& chosen) {
+  Chosen own;
+  std::ranges::copy_if(chosen, std::back_inserter(own), [&](std::size_t i) { return rows_.area_of[i] == area; });
+  std::ranges::sort(own);
+  const auto known = known_[area].find(own);
+  if (known != known_[area].end()) return known->second;
+  const LightSums sums = switch_light(rows_, area, own, light_);
+  return known_[area].emplace(std::move(own), sums).first->second;
+}
+
+LightSums LightSearch::of(const Chosen& chosen) {
+  LightSums sums;
+  for (std::size_t area = 0; area < rows_.areas.size(); ++area) sums += of_area(area, chosen);
+  return sums;
+}
+
+std::size_t LightSearch::best_addition(const Chosen& chosen) {
+  std::size_t best = rows_.sensors.size();
+  LightSums least;
+  Chosen with_one = chosen;
+  with_one.push_back(0);
+  for (std::size_t i = 0; i < rows_.sensors.size(); ++i) {
+    if (std::ranges::find(chosen, i) != chosen.end()) continue;
+    with_one.back() = i;
+    const LightSums sums = of(with_one);
+    if (best < rows_.sensors.size() && !sums.better_than(least)) continue;
+    best = i;
+    least = sums;
+  }
+  return best;
+}
+
+SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
+  double total = 0.0;
+  for (const MountingLineSpec& line : search.lines) total += glm::distance(line.from, line.to);
+  SensorSetSpec set{std::move(id), {}};
+  for (const double share : shares) {
+    double along = share * total;
+    std::size_t i = 0;
+    while (i + 1 < search.lines.size() && along > glm::distance(search.lines[i].from, search.lines[i].to)) {
+      along -= glm::distance(search.lines[i].from, search.lines[i].to);
+      ++i;
+    }
+    const MountingLineSpec& line = search.lines[i];
+    const double length = glm::distance(line.from, line.to);
+    const double part = length > 0.0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
+    set.sensors.push_back({"PIR" + std::to_string(set.sensors.size() + 1), search.model,
+                           mounted(line.from + part * (line.to - line.from), line.yaw_deg, line.tilt_deg)});
+  }
+  return set;
+}
+
+Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+               const std::vector<double>& shares, unsigned threads, const Tried& tried) {
+  constexpr std::size_t at_once = 16;  // sensors: they share the sitter's movements, and memory stays small
+  const std::vector<SensorSpec> places = sensors_along(search, shares, "").sensors;
+  Cover cover;
+  cover.covered.resize(places.size());
+  for (std::size_t first = 0; first < places.size(); first += at_once) {
+    const std::size_t end = std::min(first + at_once, places.size());
+    SensorSetSpec set{
+        "", {places.begin() + static_cast<std::ptrdiff_t>(first), places.begin() + static_cast<std::ptrdiff_t>(end)}};
+    const CoverageStudy study = study_of(scene, spec.coverage, set);
+    add_noticed(cover, first, watch_workers(study, SeatsTried::all, threads), run_coverage(study, threads));
+    for (std::size_t i = first; i < end; ++i) tried();
+  }
+  return cover;
+}
+
+PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
+                                 unsigned threads, const Tried& tried) {
+  if (spec.by == PlacementAim::area) return search_by_area(scene, spec.coverage, search, threads, tried);
+  return search_among_places(scene, spec, search, threads, tried);
 }
 
 }  // namespace pirsim::studies
@@ -368,357 +605,3 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
 }
 
 }  // namespace pirsim
-
-namespace pirsim::studies {
-namespace {
-
-/// How many of the chosen cover each thing.
-class Coverings {
- public:
-  explicit Coverings(const Cover& cover) : cover_(cover), times_(cover.worth.size(), 0) {}
-
-  void add(std::size_t candidate) {
-    for (const std::uint32_t thing : cover_.covered[candidate]) ++times_[thing];
-  }
-  void remove(std::size_t candidate) {
-    for (const std::uint32_t thing : cover_.covered[candidate]) --times_[thing];
-  }
-  /// Of a candidate that isn't chosen.
-  [[nodiscard]] std::uint64_t gain(std::size_t candidate) const {
-    std::uint64_t sum = 0;
-    for (const std::uint32_t thing : cover_.covered[candidate]) sum += times_[thing] == 0 ? cover_.worth[thing] : 0;
-    return sum;
-  }
-  /// The first that gains most. Takes none of `taken`.
-  [[nodiscard]] std::size_t best(const std::vector<std::size_t>& taken) const {
-    std::size_t best = cover_.covered.size();
-    std::uint64_t most = 0;
-    for (std::size_t i = 0; i < cover_.covered.size(); ++i) {
-      if (std::ranges::find(taken, i) != taken.end()) continue;
-      const std::uint64_t gained = gain(i);
-      if (best == cover_.covered.size() || gained > most) {
-        best = i;
-        most = gained;
-      }
-    }
-    return best;
-  }
-
- private:
-  const Cover& cover_;
-  std::vector<std::size_t> times_;
-};
-
-}  // namespace
-
-std::uint64_t Cover::worth_of(const std::vector<std::size_t>& chosen) const {
-  Coverings coverings(*this);
-  std::uint64_t sum = 0;
-  for (const std::size_t candidate : chosen) {
-    sum += coverings.gain(candidate);
-    coverings.add(candidate);
-  }
-  return sum;
-}
-
-std::vector<std::size_t> greedy_cover(const Cover& cover, std::size_t n) {
-  Coverings coverings(cover);
-  std::vector<std::size_t> chosen;
-  while (chosen.size() < n) {
-    chosen.push_back(coverings.best(chosen));
-    coverings.add(chosen.back());
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> exchanged(const Cover& cover, std::vector<std::size_t> chosen) {
-  Coverings coverings(cover);
-  for (const std::size_t candidate : chosen) coverings.add(candidate);
-  for (bool gains = chosen.size() < cover.covered.size(); gains;) {
-    gains = false;
-    for (std::size_t& candidate : chosen) {
-      coverings.remove(candidate);
-      const std::size_t other = coverings.best(chosen);
-      if (coverings.gain(other) > coverings.gain(candidate)) {
-        candidate = other;
-        gains = true;
-      }
-      coverings.add(candidate);
-    }
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> best_cover(const Cover& cover, const std::vector<std::size_t>& start) {
-  std::vector<std::size_t> greedy = exchanged(cover, greedy_cover(cover, start.size()));
-  std::vector<std::size_t> other = exchanged(cover, start);
-  return cover.worth_of(other) > cover.worth_of(greedy) ? other : greedy;
-}
-
-const LightSums& LightSearch::of_area(std::size_t area, const Sensors& chosen) {
-  Sensors own;
-  for (const std::size_t sensor : chosen) {
-    if (rows_.area_of[sensor] == area) own.push_back(sensor);
-  }
-  std::ranges::sort(own);
-  const auto known = known_[area].find(own);
-  if (known != known_[area].end()) return known->second;
-  const LightSums sums = switch_light(rows_, area, own, light_);
-  return known_[area].emplace(std::move(own), sums).first->second;
-}
-
-LightSums LightSearch::of(const Sensors& chosen) {
-  LightSums sums;
-  for (std::size_t area = 0; area < rows_.areas.size(); ++area) sums += of_area(area, chosen);
-  return sums;
-}
-
-std::size_t LightSearch::best_addition(Sensors chosen) {
-  std::size_t best = rows_.sensors.size();
-  LightSums least;
-  const Sensors taken = chosen;
-  chosen.push_back(0);
-  for (std::size_t i = 0; i < rows_.sensors.size(); ++i) {
-    if (std::ranges::find(taken, i) != taken.end()) continue;
-    chosen.back() = i;
-    const LightSums sums = of(chosen);
-    if (best < rows_.sensors.size() && !sums.better_than(least)) continue;
-    best = i;
-    least = sums;
-  }
-  return best;
-}
-
-std::vector<std::size_t> LightSearch::greedy(std::size_t n) {
-  Sensors chosen;
-  while (chosen.size() < n) chosen.push_back(best_addition(chosen));
-  return chosen;
-}
-
-std::vector<std::size_t> LightSearch::exchanged(Sensors chosen) {
-  for (bool gains = chosen.size() < rows_.sensors.size(); gains;) {
-    gains = false;
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      Sensors others = chosen;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      Sensors changed = chosen;
-      changed[i] = best_addition(others);
-      if (!of(changed).better_than(of(chosen))) continue;
-      chosen = std::move(changed);
-      gains = true;
-    }
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> LightSearch::best(const Sensors& start) {
-  Sensors greedy_set = exchanged(greedy(start.size()));
-  Sensors other = exchanged(start);
-  return of(other).better_than(of(greedy_set)) ? other : greedy_set;
-}
-
-namespace {
-
-/// The search as NLopt calls it.
-struct Objective {
-  const SceneSpec& scene;
-  const CoverageSpec& coverage;
-  const PlacementSearchSpec& search;
-  unsigned threads;
-  const Tried& tried;
-  int evaluations = 0;
-  double best_area = -1.0;
-  std::vector<double> best;
-  std::exception_ptr fault{};  ///< which NLopt would replace by its own
-
-  double area(const std::vector<double>& shares) {
-    ++evaluations;
-    tried();
-    const double seen = score(scene, coverage, sensors_along(search, shares, ""), threads).seen_area_m2;
-    if (seen > best_area) {
-      best_area = seen;
-      best = shares;
-    }
-    return seen;
-  }
-};
-
-void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations) {
-  if (evaluations < 1) return;
-  nlopt::opt optimiser(algorithm, static_cast<unsigned>(objective.search.n_sensors));
-  optimiser.set_lower_bounds(0.0);
-  optimiser.set_upper_bounds(1.0);
-  optimiser.set_maxeval(evaluations);
-  optimiser.set_xtol_abs(1e-3);
-  optimiser.set_initial_step(0.1);
-  optimiser.set_max_objective(
-      [](const std::vector<double>& shares, std::vector<double>&, void* data) {
-        auto& called = *static_cast<Objective*>(data);
-        try {
-          return called.area(shares);
-        } catch (...) {
-          called.fault = std::current_exception();
-          throw nlopt::forced_stop();
-        }
-      },
-      &objective);
-  std::vector<double> shares = objective.best;
-  double area = 0.0;
-  try {
-    optimiser.optimize(shares, area);
-  } catch (const nlopt::roundoff_limited&) {
-    // The best so far is kept: no further progress is possible.
-  } catch (const nlopt::forced_stop&) {
-    std::rethrow_exception(objective.fault);
-  }
-}
-
-std::vector<double> even_shares(int n) {
-  std::vector<double> shares;
-  for (int i = 0; i < n; ++i) shares.push_back((i + 0.5) / n);
-  return shares;
-}
-
-/// No number of squares is worth a seat that is surely noticed, and no number of these a seat that is noticed.
-std::vector<std::uint64_t> worth(std::size_t n_seats, std::size_t n_squares) {
-  const std::uint64_t surely = n_squares + 1, noticed = (n_seats + 1) * surely;
-  std::vector<std::uint64_t> worth(n_seats, noticed);
-  worth.resize(2 * n_seats, surely);
-  worth.resize(2 * n_seats + n_squares, 1);
-  return worth;
-}
-
-/// Adds what the sensors from `first` on notice.
-void add_noticed(Cover& cover, std::size_t first, const WorkReport& work, const CoverageMap& map) {
-  const std::size_t n_sensors = map.sensors.size();
-  for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
-    std::vector<std::uint32_t>& covered = cover.covered[first + sensor];
-    std::uint32_t thing = 0;
-    for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
-      if (work.notice(seat, sensor).seconds > 0) covered.push_back(thing);
-    }
-    for (std::size_t seat = 0; seat < work.seats.size(); ++seat, ++thing) {
-      if (work.notice(seat, sensor).is_sure()) covered.push_back(thing);
-    }
-    for (std::size_t at = sensor; at < map.counts.size(); at += n_sensors, ++thing) {
-      if (map.counts[at] > 0) covered.push_back(thing);
-    }
-  }
-  cover.worth = worth(work.seats.size(), map.counts.size() / n_sensors);
-}
-
-std::vector<double> found_by_seats(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                   const std::vector<double>& even, unsigned threads, const Tried& tried) {
-  std::vector<double> shares = even;
-  const std::vector<double> places = even_shares(search.evaluations);
-  shares.insert(shares.end(), places.begin(), places.end());
-  std::vector<std::size_t> start(even.size());
-  std::iota(start.begin(), start.end(), std::size_t{0});
-  std::vector<double> found;
-  for (const std::size_t i : best_cover(cover_of(scene, spec, search, shares, threads, tried), start)) {
-    found.push_back(shares[i]);
-  }
-  std::ranges::sort(found);
-  return found;
-}
-
-PlacementSearch search_by_area(const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search,
-                               unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
-  Objective objective{scene, coverage, search, threads, tried, 0, -1.0, {}};
-  static_cast<void>(objective.area(even));
-  maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
-  maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);
-  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, coverage, sensors_along(search, objective.best, "found"), threads), objective.evaluations};
-}
-
-PlacementSearch search_by_seats(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
-  const std::vector<double> found = found_by_seats(scene, spec, search, even, threads, tried);
-  return {score(scene, spec.coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
-}
-
-/// All places hang in one room at once: the people are simulated once, and each place has its own column of motion.
-std::vector<double> found_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                   const std::vector<double>& even, unsigned threads, const Tried& tried) {
-  std::vector<double> shares = even;
-  const std::vector<double> places = even_shares(search.evaluations);
-  shares.insert(shares.end(), places.begin(), places.end());
-  std::size_t n_told = 0;
-  const auto tell = [&](std::size_t n_done, std::size_t n_runs) {
-    for (; n_told < places.size() * n_done / n_runs; ++n_told) tried();
-  };
-  const LightRows rows =
-      light_rows(with_set(scene, sensors_along(search, shares, "")), *spec.light, spec.coverage.sensing, threads, tell);
-  std::vector<std::size_t> start(even.size());
-  std::iota(start.begin(), start.end(), std::size_t{0});
-  std::vector<double> found;
-  for (const std::size_t i : LightSearch(rows, *spec.light).best(start)) found.push_back(shares[i]);
-  std::ranges::sort(found);
-  return found;
-}
-
-PlacementSearch search_by_light(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                unsigned threads, const Tried& tried) {
-  const std::vector<double> even = even_shares(search.n_sensors);
-  const std::vector<double> found = found_by_light(scene, spec, search, even, threads, tried);
-  return {score(scene, spec.coverage, sensors_along(search, even, "even spacing"), threads),
-          score(scene, spec.coverage, sensors_along(search, found, "found"), threads), search.evaluations};
-}
-
-}  // namespace
-
-SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
-  double total = 0.0;
-  for (const MountingLineSpec& line : search.lines) total += glm::distance(line.from, line.to);
-  SensorSetSpec set{std::move(id), {}};
-  for (const double share : shares) {
-    double along = share * total;
-    std::size_t i = 0;
-    while (i + 1 < search.lines.size() && along > glm::distance(search.lines[i].from, search.lines[i].to)) {
-      along -= glm::distance(search.lines[i].from, search.lines[i].to);
-      ++i;
-    }
-    const MountingLineSpec& line = search.lines[i];
-    const double length = glm::distance(line.from, line.to);
-    const double part = length > 0.0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
-    set.sensors.push_back({"PIR" + std::to_string(set.sensors.size() + 1), search.model,
-                           mounted(line.from + part * (line.to - line.from), line.yaw_deg, line.tilt_deg)});
-  }
-  return set;
-}
-
-Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-               const std::vector<double>& shares, unsigned threads, const Tried& tried) {
-  constexpr std::size_t at_once = 16;  // sensors: they share the sitter's movements, and memory stays small
-  const std::vector<SensorSpec> places = sensors_along(search, shares, "").sensors;
-  Cover cover;
-  cover.covered.resize(places.size());
-  for (std::size_t first = 0; first < places.size(); first += at_once) {
-    const std::size_t end = std::min(first + at_once, places.size());
-    SensorSetSpec set{
-        "", {places.begin() + static_cast<std::ptrdiff_t>(first), places.begin() + static_cast<std::ptrdiff_t>(end)}};
-    const CoverageStudy study = study_of(scene, spec.coverage, set);
-    add_noticed(cover, first, watch_workers(study, SeatsTried::all, threads), run_coverage(study, threads));
-    for (std::size_t i = first; i < end; ++i) tried();
-  }
-  return cover;
-}
-
-PlacementSearch search_placement(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
-                                 unsigned threads, const Tried& tried) {
-  switch (spec.by) {
-    case PlacementAim::area:
-      return search_by_area(scene, spec.coverage, search, threads, tried);
-    case PlacementAim::seats:
-      return search_by_seats(scene, spec, search, threads, tried);
-    case PlacementAim::false_off:
-      return search_by_light(scene, spec, search, threads, tried);
-  }
-  throw Error(ErrorCode::internal, "unknown aim of a placement search");
-}
-
-}  // namespace pirsim::studies

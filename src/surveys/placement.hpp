@@ -105,55 +105,77 @@ struct LightScore {
 [[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSpec& spec);
 [[nodiscard]] std::string to_text(const PlacementSearch& search, PlacementAim by);
 
-// Which few of many candidates cover most together? Ref: [NemhauserWolseyFisher1978].
+// Which few of many candidates do best together? A search knows how many there are, which one adds most to some, and
+// which of two choices is better.
 
-/// Things that candidates cover. What a thing is worth counts once, however many cover it.
+using Chosen = std::vector<std::size_t>;  ///< indices of candidates
+
+/// Takes the candidate that is best with those before it, `n` times. n: at most as many as there are.
+template <typename Search>
+[[nodiscard]] Chosen greedy(Search& search, std::size_t n) {
+  Chosen chosen;
+  while (chosen.size() < n) chosen.push_back(search.best_addition(chosen));
+  return chosen;
+}
+
+/// Exchanges one candidate after the other for the best other one, until no exchange gains anything.
+template <typename Search>
+[[nodiscard]] Chosen exchanged(Search& search, Chosen chosen) {
+  for (bool gains = chosen.size() < search.n_candidates(); gains;) {
+    gains = false;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      Chosen others = chosen, changed = chosen;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      changed[i] = search.best_addition(others);
+      if (!search.is_better(changed, chosen)) continue;
+      chosen = std::move(changed);
+      gains = true;
+    }
+  }
+  return chosen;
+}
+
+/// The better of two starts, after exchanges: the greedy one and `start`. Never worse than either.
+template <typename Search>
+[[nodiscard]] Chosen best_of(Search& search, const Chosen& start) {
+  Chosen from_greed = exchanged(search, greedy(search, start.size())), from_start = exchanged(search, start);
+  return search.is_better(from_start, from_greed) ? from_start : from_greed;
+}
+
+/// Things that candidates cover. What a thing is worth counts once, however many cover it, so that the greedy choice is
+/// worth at least 1 - 1/e of the best. Ref: [NemhauserWolseyFisher1978].
 struct Cover {
   std::vector<std::uint64_t> worth;                 ///< (n_things)
   std::vector<std::vector<std::uint32_t>> covered;  ///< (n_candidates) things of each
 
-  [[nodiscard]] std::uint64_t worth_of(const std::vector<std::size_t>& chosen) const;
+  [[nodiscard]] std::size_t n_candidates() const noexcept { return covered.size(); }
+  [[nodiscard]] std::uint64_t worth_of(const Chosen& chosen) const;
+  /// Of those that aren't chosen; the first of several.
+  [[nodiscard]] std::size_t best_addition(const Chosen& chosen) const;
+  [[nodiscard]] bool is_better(const Chosen& a, const Chosen& b) const { return worth_of(a) > worth_of(b); }
 };
 
-/// Takes the candidate that adds most, `n` times, and the first of several such. What is covered is worth at least
-/// 1 - 1/e of the most that n candidates can cover. n: at most n_candidates.
-[[nodiscard]] std::vector<std::size_t> greedy_cover(const Cover& cover, std::size_t n);
-
-/// Exchanges one candidate after the other for the best other one, until no exchange gains anything.
-[[nodiscard]] std::vector<std::size_t> exchanged(const Cover& cover, std::vector<std::size_t> chosen);
-
-/// The better of two starts, after exchanges: the greedy one and `start`. Never covers less than either.
-[[nodiscard]] std::vector<std::size_t> best_cover(const Cover& cover, const std::vector<std::size_t>& start);
-
-// Which few of many candidate sensors make light go off on somebody least often?
-
-/// Looks among sets of the rows' sensors. Areas don't depend on each other: what an area's sensors do is worked out
-/// once.
+/// Sensors that make light go off on somebody seldom. Areas don't depend on each other: what an area's sensors do is
+/// worked out once.
 class LightSearch {
  public:
   /// Both outlive it.
   LightSearch(const LightRows& rows, const PlacementLightSpec& light)
       : rows_(rows), light_(light), known_(rows.areas.size()) {}
 
+  [[nodiscard]] std::size_t n_candidates() const noexcept { return rows_.sensors.size(); }
   /// Of all areas together.
-  [[nodiscard]] LightSums of(const std::vector<std::size_t>& chosen);
-  /// Takes the sensor that is best with those before it, `n` times, and the first of several such. n: at most as many
-  /// as there are.
-  [[nodiscard]] std::vector<std::size_t> greedy(std::size_t n);
-  /// Exchanges one sensor after the other for the best other one, until no exchange gains anything.
-  [[nodiscard]] std::vector<std::size_t> exchanged(std::vector<std::size_t> chosen);
-  /// The better of two starts, after exchanges: the greedy one and `start`. Never worse than either.
-  [[nodiscard]] std::vector<std::size_t> best(const std::vector<std::size_t>& start);
+  [[nodiscard]] LightSums of(const Chosen& chosen);
+  /// Of those that aren't chosen; the first of several.
+  [[nodiscard]] std::size_t best_addition(const Chosen& chosen);
+  [[nodiscard]] bool is_better(const Chosen& a, const Chosen& b) { return of(a).better_than(of(b)); }
 
  private:
-  using Sensors = std::vector<std::size_t>;
-  [[nodiscard]] const LightSums& of_area(std::size_t area, const Sensors& chosen);
-  /// The best to add to `chosen`.
-  [[nodiscard]] std::size_t best_addition(Sensors chosen);
+  [[nodiscard]] const LightSums& of_area(std::size_t area, const Chosen& chosen);
 
   const LightRows& rows_;
   const PlacementLightSpec& light_;
-  std::vector<std::map<Sensors, LightSums>> known_;  ///< (n_areas) by the sensors that watch it, in order
+  std::vector<std::map<Chosen, LightSums>> known_;  ///< (n_areas) by the sensors that watch it, in order
 };
 
 // A better set of sensors, looked for along mounting lines.
@@ -162,10 +184,9 @@ class LightSearch {
 using Tried = std::function<void()>;
 
 /// By area: seen area, by NLopt's DIRECT-L and then SBPLX. By seats: judges single places, evenly along the lines and
-/// those of even spacing, and covers seats, then seats that are surely noticed, then area,
-/// with the best of them (studies/best_cover.hpp). By false-offs: the same places, in sight of the light's people
-/// (studies/light_search.hpp). Starts from even
-/// spacing. Throws as score() does. Sets at_work and light of neither.
+/// those of even spacing, and covers seats, then seats that are surely noticed, then area, with the best of them. By
+/// false-offs: the same places, in sight of the light's people. Starts from even spacing. Throws as score() does. Sets
+/// at_work and light of neither.
 [[nodiscard]] PlacementSearch search_placement(
     const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search, unsigned threads = 0,
     const Tried& tried = [] {});

@@ -119,51 +119,7 @@ io::Table places_of(const std::vector<SensorSpec>& sensors) {
   return table;
 }
 
-}  // namespace
-
-PlacementViews views_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
-                        unsigned threads) {
-  PlacementViews views;
-  if (!scene.sensors.empty()) views.before = view_of(scene, spec, "before: the scene's own sensors", threads);
-  if (!report.ranked.empty() && !report.ranked[0].set.sensors.empty())
-    views.after = view_of(report.best, spec, "after: " + report.ranked[0].set.id, threads);
-  return views;
-}
-
-io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
-                            const PlacementViews& views) {
-  io::Report page;
-  page.title = spec.coverage.name + ": where sensors go";
-  page.paragraphs = {
-      "Sets of sensors for " + scene.name + ", ranked by " + ranked_by(spec) + ". The sensors' response is " +
-          responses_in_words(report.best, spec.coverage.sensing) + ".",
-      "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
-      "means that none did. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
-      "where "
-      "no sensor noticed it. " +
-          signs_of_maps(scene)};
-  io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked, spec)}, {}};
-  if (report.search && !report.search->gained) sets.paragraphs = {"The search found nothing better than even spacing."};
-  page.sections.push_back(std::move(sets));
-  if (spec.light) {
-    page.paragraphs.push_back(about_light(*spec.light));
-    page.sections.push_back(light_by_area(report.ranked));
-  }
-  if (views.before) page.sections.push_back(section_of("Before: the scene's own sensors", *views.before));
-  if (views.after) {
-    page.sections.push_back(section_of("After: the best set, " + report.ranked[0].set.id, *views.after));
-    page.sections.back().tables.push_back(places_of(report.best.sensors));
-  } else if (views.before && !report.ranked.empty()) {
-    page.finding = "No set does better than the scene's own sensors.";
-  }
-  return page;
-}
-
 // What `pirsim placements` prints.
-
-namespace {
-
-std::string listed(const std::vector<std::string>& names) { return names.empty() ? "none" : joined(names, " "); }
 
 /// "17.23 m2 found, 1.20 m2 more than even spacing (16.03 m2)"
 std::string gain_by_area(const PlacementSearch& search) {
@@ -204,6 +160,44 @@ std::string gain(const PlacementSearch& search, PlacementAim by) {
 
 }  // namespace
 
+PlacementViews views_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
+                        unsigned threads) {
+  PlacementViews views;
+  if (!scene.sensors.empty()) views.before = view_of(scene, spec, "before: the scene's own sensors", threads);
+  if (!report.ranked.empty() && !report.ranked[0].set.sensors.empty())
+    views.after = view_of(report.best, spec, "after: " + report.ranked[0].set.id, threads);
+  return views;
+}
+
+io::Report placement_report(const SceneSpec& scene, const PlacementSpec& spec, const PlacementReport& report,
+                            const PlacementViews& views) {
+  io::Report page;
+  page.title = spec.coverage.name + ": where sensors go";
+  page.paragraphs = {
+      "Sets of sensors for " + scene.name + ", ranked by " + ranked_by(spec) + ". The sensors' response is " +
+          responses_in_words(report.best, spec.coverage.sensing) + ".",
+      "Each square of a map has the count of the sensor that reported motion of a turning target most often there: 0 "
+      "means that none did. Somebody of natural style worked in each seat, alone; an orange ring is round each seat "
+      "where "
+      "no sensor noticed it. " +
+          signs_of_maps(scene)};
+  io::ReportSection sets{"Sets, best first", {}, {ranking(report.ranked, spec)}, {}};
+  if (report.search && !report.search->gained) sets.paragraphs = {"The search found nothing better than even spacing."};
+  page.sections.push_back(std::move(sets));
+  if (spec.light) {
+    page.paragraphs.push_back(about_light(*spec.light));
+    page.sections.push_back(light_by_area(report.ranked));
+  }
+  if (views.before) page.sections.push_back(section_of("Before: the scene's own sensors", *views.before));
+  if (views.after) {
+    page.sections.push_back(section_of("After: the best set, " + report.ranked[0].set.id, *views.after));
+    page.sections.back().tables.push_back(places_of(report.best.sensors));
+  } else if (views.before && !report.ranked.empty()) {
+    page.finding = "No set does better than the scene's own sensors.";
+  }
+  return page;
+}
+
 std::string ranked_by(const PlacementSpec& spec) {
   std::ostringstream delay;
   if (spec.light) delay << spec.light->delay_min;
@@ -241,8 +235,8 @@ std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSp
   }
   out << "seats by name:\n";
   for (const PlacementScore& s : scores) {
-    out << "  " << s.set.id << ": a turning target there isn't seen: " << listed(s.blind_seats)
-        << "; at work: deaf: " << listed(s.at_work.deaf) << ", unseen: " << listed(s.at_work.unseen) << '\n';
+    out << "  " << s.set.id << ": a turning target there isn't seen: " << named(s.blind_seats)
+        << "; at work: deaf: " << named(s.at_work.deaf) << ", unseen: " << named(s.at_work.unseen) << '\n';
   }
   return out.str();
 }

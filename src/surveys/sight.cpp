@@ -36,9 +36,10 @@ constexpr std::size_t most_seats = 30, most_pairs = 600;  // of seats and sensor
 constexpr std::size_t most_remembered = 1024;             // the metronome's work has some 600 postures
 
 /// The worker's body, tick by tick, as in a run.
-class Body {
+class SittingBody {
  public:
-  Body(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid, const body::SeatPlace& place)
+  SittingBody(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid,
+              const body::SeatPlace& place)
       : work_(worker.work),
         activity_(facts_of(worker.work).activity),
         motion_(seated(humanoid, place, room.array.tick_s())),
@@ -72,9 +73,9 @@ class Body {
 };
 
 /// What the optics show of one body's postures, with those that it was in before.
-class View {
+class PostureView {
  public:
-  View(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid)
+  PostureView(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid)
       : room_(room),
         humanoid_(humanoid),
         radiance_(sim::radiance_of(worker.person.warmth, room.sensing.ambient_c)),
@@ -106,9 +107,9 @@ class View {
 };
 
 /// Channels that saw the body at some tick, and at every tick.
-class Coverage {
+class SeenChannels {
  public:
-  explicit Coverage(const ZoneSet& channels) : ever_(channels), always_(channels) {}
+  explicit SeenChannels(const ZoneSet& channels) : ever_(channels), always_(channels) {}
 
   void add(const ZoneSet& channels) noexcept {
     ever_.add(channels.words());
@@ -140,13 +141,13 @@ std::pair<std::size_t, std::size_t> channels_of(const WatchedRoom& room, std::si
 /// (n_sensors)
 std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int work_s, const body::Humanoid& humanoid,
                               const body::SeatPlace& place) {
-  Body body(room, worker, humanoid, place);
+  SittingBody body(room, worker, humanoid, place);
   const int rate = room.sensing.tick_rate_hz;
   for (int tick = 0; tick < reach_s * rate; ++tick) body.advance();
-  View view(room, worker, humanoid);
+  PostureView view(room, worker, humanoid);
   body::Outline outline = body.outline();
   sim::Exposure before = view.of(outline), after = before;
-  Coverage coverage(before.channels);
+  SeenChannels coverage(before.channels);
   sim::Detector detector(room.array);
   detector.begin_run(room.seed, 0, before);
   std::vector<std::uint8_t> triggers(room.array.n_sensors()), noticed(room.array.n_sensors());
@@ -175,7 +176,89 @@ std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int
   return notices;
 }
 
+constexpr double beside_m = 0.5;  // assumed: a sensor on the far side of a wall isn't nearer (tried 0.3-1)
+constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thinner, and nobody comes so near
+
+/// Traces single postures and tells which sensors have an active zone.
+class Onlooker {
+ public:
+  Onlooker(const Model& model, const body::Humanoid& humanoid)
+      : rays_(model.compiled().array().rated()),
+        humanoid_(humanoid),
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {}
+
+  /// (n_sensors) whether the sensor sees the posture.
+  std::vector<bool> sensors_that_see(const body::Posture& posture) {
+    std::vector<PosedShape> solids;
+    for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
+    ZoneSet zones(rays_.n_zones());
+    tracer_->add(0, solids, zones);
+    std::vector<bool> seen;
+    for (std::size_t sensor = 0; sensor < rays_.n_sensors(); ++sensor) {
+      const auto first = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor]];
+      const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
+      seen.push_back(std::ranges::any_of(std::views::iota(first, last), [&](auto zone) { return zones.test(zone); }));
+    }
+    return seen;
+  }
+
+ private:
+  const RayBundle& rays_;
+  const body::Humanoid& humanoid_;
+  std::unique_ptr<rt::Tracer> tracer_;
+};
+
+body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
+  try {
+    return seated(humanoid, {seat.world_from_seat, model.scene().floor.height_m(), std::nullopt}, model.tick_s())
+        .posture();
+  } catch (const Error& fault) {  // the body knows no names
+    throw Error(fault.code(), Where{model.scene().name}, "seat '" + seat.id + "': " + fault.issues().front().message);
+  }
+}
+
+void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
+  const RayBundle& rated = model.compiled().array().rated();
+  const RayBundle& clipped = model.rays();
+  const auto ray_of_cluster = [&](std::uint32_t cluster) {
+    return rated.zone_rays_begin[rated.cluster_zones_begin[cluster]];
+  };
+  const auto first = ray_of_cluster(rated.sensor_clusters_begin[sensor]);
+  const auto last = ray_of_cluster(rated.sensor_clusters_begin[sensor + 1]);
+  sight.rays = last - first;
+  for (auto ray = first; ray < last; ++ray) {
+    if (clipped.range[ray] < rated.range[ray]) ++sight.rays_cut;
+    sight.longest_m = std::max(sight.longest_m, static_cast<double>(clipped.range[ray]));
+  }
+}
+
+/// Was the scene told to be in another unit than metres? Then that is why.
+bool is_told_of_unit(const SceneSpec& scene) {
+  const auto doubt = doubt_of_unit(scene);
+  return doubt &&
+         std::ranges::any_of(scene.warnings, [&](const Issue& told) { return told.message.ends_with(*doubt); });
+}
+
+void note_blind(const SensorSight& sight, const std::string& scene, GroupedWarnings& warnings) {
+  const std::string name = "sensor '" + sight.sensor + "'", blind = name + " can see NOBODY: ";
+  if (!sight.outside.empty()) return warnings.add("outside", {scene, 0, 0}, name, blind + sight.outside);
+  if (sight.rays > 0 && sight.longest_m < buried_m) {
+    return warnings.add("buried", {scene, 0, 0}, name,
+                        blind + "all of its rays end within " +
+                            std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
+                            " cm (is it inside a wall, or right before one?)");
+  }
+  warnings.add("astray", {scene, 0, 0}, name,
+               blind +
+                   "no zone reaches a standing or seated person anywhere on the floor area (does it look at a "
+                   "wall, along -Z of its node?)");
+}
+
 }  // namespace
+
+WatchedRoom room_of(const sim::CompiledStudy& study) {
+  return {study.scene(), study.sensing(), study.array(), study.tracer(), study.seed()};
+}
 
 Worker usual_worker() {
   Worker worker;
@@ -234,94 +317,6 @@ body::Motion seated(const body::Humanoid& humanoid, const body::SeatPlace& place
   return motion;
 }
 
-}  // namespace pirsim::studies
-
-namespace pirsim {
-
-SeatsAtWork WorkReport::by_any() const {
-  SeatsAtWork result;
-  const std::size_t n_sensors = seats.empty() ? 0 : notices.size() / seats.size();
-  for (std::size_t i = 0; i < seats.size(); ++i) {
-    const std::span of_seat = std::span(notices).subspan(i * n_sensors, n_sensors);
-    const bool noticed = std::ranges::any_of(of_seat, [](const WorkNotice& notice) { return notice.seconds > 0; });
-    const bool deaf = !noticed && std::ranges::any_of(of_seat, &WorkNotice::is_deaf);
-    (noticed ? result.noticed : deaf ? result.deaf : result.unseen).push_back(seats[i]);
-    if (std::ranges::any_of(of_seat, &WorkNotice::is_sure)) result.surely.push_back(seats[i]);
-  }
-  return result;
-}
-
-std::vector<std::string> WorkReport::deaf_seats(std::size_t sensor) const {
-  std::vector<std::string> deaf;
-  for (std::size_t i = 0; i < seats.size(); ++i) {
-    if (notice(i, sensor).is_deaf()) deaf.push_back(seats[i]);
-  }
-  return deaf;
-}
-
-}  // namespace pirsim
-
-namespace pirsim::studies {
-namespace {
-
-constexpr double beside_m = 0.5;  // assumed: a sensor on the far side of a wall isn't nearer (tried 0.3-1)
-constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thinner, and nobody comes so near
-
-/// Traces single postures and tells which sensors have an active zone.
-class Onlooker {
- public:
-  Onlooker(const Model& model, const body::Humanoid& humanoid)
-      : rays_(model.compiled().array().rated()),
-        humanoid_(humanoid),
-        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {}
-
-  /// (n_sensors) whether the sensor sees the posture.
-  std::vector<bool> sensors_that_see(const body::Posture& posture) {
-    std::vector<PosedShape> solids;
-    for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
-    ZoneSet zones(rays_.n_zones());
-    tracer_->add(0, solids, zones);
-    std::vector<bool> seen;
-    for (std::size_t sensor = 0; sensor < rays_.n_sensors(); ++sensor) {
-      const auto first = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor]];
-      const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
-      seen.push_back(std::ranges::any_of(std::views::iota(first, last), [&](auto zone) { return zones.test(zone); }));
-    }
-    return seen;
-  }
-
- private:
-  const RayBundle& rays_;
-  const body::Humanoid& humanoid_;
-  std::unique_ptr<rt::Tracer> tracer_;
-};
-
-body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
-  try {
-    return seated(humanoid, {seat.world_from_seat, model.scene().floor.height_m(), std::nullopt}, model.tick_s())
-        .posture();
-  } catch (const Error& fault) {  // the body knows no names
-    throw Error(fault.code(), Where{model.scene().name}, "seat '" + seat.id + "': " + fault.issues().front().message);
-  }
-}
-
-void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
-  const RayBundle& rated = model.compiled().array().rated();
-  const RayBundle& clipped = model.rays();
-  const auto ray_of_cluster = [&](std::uint32_t cluster) {
-    return rated.zone_rays_begin[rated.cluster_zones_begin[cluster]];
-  };
-  const auto first = ray_of_cluster(rated.sensor_clusters_begin[sensor]);
-  const auto last = ray_of_cluster(rated.sensor_clusters_begin[sensor + 1]);
-  sight.rays = last - first;
-  for (auto ray = first; ray < last; ++ray) {
-    if (clipped.range[ray] < rated.range[ray]) ++sight.rays_cut;
-    sight.longest_m = std::max(sight.longest_m, static_cast<double>(clipped.range[ray]));
-  }
-}
-
-}  // namespace
-
 SightReport look_around(const Model& model) {
   const SceneSpec& scene = model.compiled().scene();
   const auto& people = model.compiled().trials().front().people;
@@ -365,32 +360,6 @@ std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
   return "it hangs outside of the room, " + text.str() + " m from the floor's edge";
 }
 
-namespace {
-
-/// Was the scene told to be in another unit than metres? Then that is why.
-bool is_told_of_unit(const SceneSpec& scene) {
-  const auto doubt = doubt_of_unit(scene);
-  return doubt &&
-         std::ranges::any_of(scene.warnings, [&](const Issue& told) { return told.message.ends_with(*doubt); });
-}
-
-void note_blind(const SensorSight& sight, const std::string& scene, GroupedWarnings& warnings) {
-  const std::string name = "sensor '" + sight.sensor + "'", blind = name + " can see NOBODY: ";
-  if (!sight.outside.empty()) return warnings.add("outside", {scene, 0, 0}, name, blind + sight.outside);
-  if (sight.rays > 0 && sight.longest_m < buried_m) {
-    return warnings.add("buried", {scene, 0, 0}, name,
-                        blind + "all of its rays end within " +
-                            std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
-                            " cm (is it inside a wall, or right before one?)");
-  }
-  warnings.add("astray", {scene, 0, 0}, name,
-               blind +
-                   "no zone reaches a standing or seated person anywhere on the floor area (does it look at a "
-                   "wall, along -Z of its node?)");
-}
-
-}  // namespace
-
 std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
   if (is_told_of_unit(scene)) return {};
   GroupedWarnings blind;
@@ -408,3 +377,28 @@ std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+
+SeatsAtWork WorkReport::by_any() const {
+  SeatsAtWork result;
+  const std::size_t n_sensors = seats.empty() ? 0 : notices.size() / seats.size();
+  for (std::size_t i = 0; i < seats.size(); ++i) {
+    const std::span of_seat = std::span(notices).subspan(i * n_sensors, n_sensors);
+    const bool noticed = std::ranges::any_of(of_seat, [](const WorkNotice& notice) { return notice.seconds > 0; });
+    const bool deaf = !noticed && std::ranges::any_of(of_seat, &WorkNotice::is_deaf);
+    (noticed ? result.noticed : deaf ? result.deaf : result.unseen).push_back(seats[i]);
+    if (std::ranges::any_of(of_seat, &WorkNotice::is_sure)) result.surely.push_back(seats[i]);
+  }
+  return result;
+}
+
+std::vector<std::string> WorkReport::deaf_seats(std::size_t sensor) const {
+  std::vector<std::string> deaf;
+  for (std::size_t i = 0; i < seats.size(); ++i) {
+    if (notice(i, sensor).is_deaf()) deaf.push_back(seats[i]);
+  }
+  return deaf;
+}
+
+}  // namespace pirsim

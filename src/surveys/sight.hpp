@@ -32,6 +32,7 @@ struct WatchedRoom {
   TracerKind tracer = fastest_tracer;
   std::uint64_t seed = 1;
 };
+[[nodiscard]] WatchedRoom room_of(const sim::CompiledStudy& study);
 
 /// Some: of more than thirty seats, thirty are tried, spread evenly over their list, and fewer with more than twenty
 /// sensors.

@@ -25,53 +25,6 @@ std::string percent_of(std::int64_t part, std::int64_t whole) {
   return fixed(whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
 }
 
-}  // namespace
-
-AreaTally::AreaTally(const Model& model)
-    : model_(&model),
-      areas_(model.scene()),
-      window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
-      with_motion_(model.areas().size(), 0) {
-  for (std::size_t area = 0; area < model.areas().size(); ++area) {
-    sums_.push_back({.area = model.areas()[area]});
-    sensors_.push_back(areas_.sensors_of(area));
-  }
-}
-
-void AreaTally::add_run(const RunResult& result) {
-  ++runs_;
-  for (const Sample& row : result.samples) {
-    for (std::size_t area = 0; area < sums_.size(); ++area) {
-      sums_[area].add(row.people_of_areas[area]);
-      const auto saw_motion = [&](std::size_t sensor) { return row.bits[sensor] != 0; };
-      with_motion_[area] += std::ranges::any_of(sensors_[area], saw_motion) ? 1 : 0;
-    }
-  }
-}
-
-io::Table AreaTally::table() const {
-  io::Table table{{"area", "floor, m²", "minutes a run, of all people", "rows with people", "most people", "sensors",
-                   "rows with motion"},
-                  {}};
-  for (std::size_t area = 0; area < sums_.size(); ++area) {
-    const AreaSums& sums = sums_[area];
-    const double minutes = static_cast<double>(sums.person_rows) * window_s_ / 60.0 / std::max(1, runs_);
-    const bool is_watched = !sensors_[area].empty();
-    table.rows.push_back({sums.area, fixed(areas_.areas_m2()[area], 2), fixed(minutes, 1),
-                          percent_of(sums.occupied, sums.rows), std::to_string(sums.most),
-                          is_watched ? names_of(model_->scene(), sensors_[area]) : "none",
-                          is_watched ? percent_of(with_motion_[area], sums.rows) : ""});
-  }
-  return table;
-}
-
-std::string with_sensors(const SceneSpec& scene, const Areas& areas, std::size_t area) {
-  const std::string sensors = names_of(scene, areas.sensors_of(area));
-  return areas.names()[area] + (sensors.empty() ? "" : " (" + sensors + ")");
-}
-
-namespace {
-
 /// Rectangles around what was taken out, one for each name.
 std::vector<std::vector<Vec2>> places_of(const CoverageStudy& study) {
   std::vector<std::vector<Vec2>> rectangles;
@@ -162,65 +115,6 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
   return chart;
 }
 
-}  // namespace
-
-io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
-  io::MapChart chart = map_with(study, map, [&](std::size_t column, std::size_t row) {
-    MotionCount most = 0;
-    for (std::size_t i = 0; i < map.sensors.size(); ++i) most = std::max<MotionCount>(most, map.count(column, row, i));
-    return most;
-  });
-  chart.title = "all sensors";
-  for (const SensorSpec& sensor : study.scene().sensors) chart.markers.push_back(marker_of(sensor));
-  return chart;
-}
-
-io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
-  io::Report report;
-  report.title = study.spec().name + ": where each sensor sees motion";
-  report.paragraphs = {
-      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
-          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
-          std::to_string(map.grid.n_squares()) +
-          " squares). The maps, seen from above, tell for each sensor in how many "
-          "of these windows it reported motion: 0 means not seen there. Point at a square for its value.",
-      "The target is " + std::to_string(study.target().crosses().size()) +
-          " crosses of two bars, turning on the spot. The sensors' response is " +
-          responses_in_words(study.scene(), study.spec().sensing) + ".",
-      signs_of_maps(study.scene()) +
-          (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
-
-  io::Table table{{"sensor", "mean step", "greatest step", "not seen", "area seen, m²"}, {}};
-  for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
-  table.rows.push_back(row_of("all together", figures.all));
-  report.sections.push_back(
-      {"In numbers",
-       {"Mean step: average difference between two neighbouring squares (sharing a side) that both have motion. "
-        "Greatest step: between any two neighbours. Not seen: share of the squares without any motion. The last row "
-        "takes "
-        "the steps of all sensors, and the area seen by at least one."},
-       {std::move(table)},
-       {}});
-  const std::vector<AreaCoverage> areas = area_figures_of(map, study.scene());
-  if (!areas.empty()) report.sections.push_back(areas_section(areas));
-  io::ReportSection maps{"Maps", {}, {}, {}};
-  if (map.sensors.size() > 1) {
-    io::MapChart chart = map_of_all(study, map);
-    chart.note = "in each square the sensor that reported motion most often there; " +
-                 percent(figures.all.blind_fraction) + " of the squares are seen by none";
-    maps.charts.emplace_back(std::move(chart));
-  }
-  for (std::size_t i = 0; i < map.sensors.size(); ++i) {
-    io::MapChart chart = map_chart(study, map, i);
-    chart.note = "not seen: " + percent(figures.sensors[i].blind_fraction) + " of the squares";
-    maps.charts.emplace_back(std::move(chart));
-  }
-  report.sections.push_back(std::move(maps));
-  return report;
-}
-
-namespace {
-
 /// Stretches of rows in one of the counted phases.
 std::vector<io::SeriesChart::Phase> counted_phases(const std::vector<Sample>& samples, const SummarySpec& spec,
                                                    double window_s) {
@@ -280,7 +174,115 @@ bool lasts_hours(const TrialSpec& trial) {
   return trial.schedule || trial.occupancy || (trial.duration_s && *trial.duration_s >= long_run_s);
 }
 
+constexpr double bin_s = 600.0, hour_s = 3600.0, square_m = 0.25;
+
+/// "2026-03-02T08:30:15" in hours of its day.
+double hours_of(const std::string& clock) {
+  const auto two = [&](std::size_t at) { return std::stod(clock.substr(at, 2)); };
+  return two(11) + two(14) / 60.0 + two(17) / hour_s;
+}
+
+std::string percents(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
+
 }  // namespace
+
+AreaTally::AreaTally(const Model& model)
+    : model_(&model),
+      areas_(model.scene()),
+      window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
+      with_motion_(model.areas().size(), 0) {
+  for (std::size_t area = 0; area < model.areas().size(); ++area) {
+    sums_.push_back({.area = model.areas()[area]});
+    sensors_.push_back(areas_.sensors_of(area));
+  }
+}
+
+void AreaTally::add_run(const RunResult& result) {
+  ++runs_;
+  for (const Sample& row : result.samples) {
+    for (std::size_t area = 0; area < sums_.size(); ++area) {
+      sums_[area].add(row.people_of_areas[area]);
+      const auto saw_motion = [&](std::size_t sensor) { return row.bits[sensor] != 0; };
+      with_motion_[area] += std::ranges::any_of(sensors_[area], saw_motion) ? 1 : 0;
+    }
+  }
+}
+
+io::Table AreaTally::table() const {
+  io::Table table{{"area", "floor, m²", "minutes a run, of all people", "rows with people", "most people", "sensors",
+                   "rows with motion"},
+                  {}};
+  for (std::size_t area = 0; area < sums_.size(); ++area) {
+    const AreaSums& sums = sums_[area];
+    const double minutes = static_cast<double>(sums.person_rows) * window_s_ / 60.0 / std::max(1, runs_);
+    const bool is_watched = !sensors_[area].empty();
+    table.rows.push_back({sums.area, fixed(areas_.areas_m2()[area], 2), fixed(minutes, 1),
+                          percent_of(sums.occupied, sums.rows), std::to_string(sums.most),
+                          is_watched ? names_of(model_->scene(), sensors_[area]) : "none",
+                          is_watched ? percent_of(with_motion_[area], sums.rows) : ""});
+  }
+  return table;
+}
+
+std::string with_sensors(const SceneSpec& scene, const Areas& areas, std::size_t area) {
+  const std::string sensors = names_of(scene, areas.sensors_of(area));
+  return areas.names()[area] + (sensors.empty() ? "" : " (" + sensors + ")");
+}
+
+io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
+  io::MapChart chart = map_with(study, map, [&](std::size_t column, std::size_t row) {
+    MotionCount most = 0;
+    for (std::size_t i = 0; i < map.sensors.size(); ++i) most = std::max<MotionCount>(most, map.count(column, row, i));
+    return most;
+  });
+  chart.title = "all sensors";
+  for (const SensorSpec& sensor : study.scene().sensors) chart.markers.push_back(marker_of(sensor));
+  return chart;
+}
+
+io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
+  io::Report report;
+  report.title = study.spec().name + ": where each sensor sees motion";
+  report.paragraphs = {
+      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
+          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
+          std::to_string(map.grid.n_squares()) +
+          " squares). The maps, seen from above, tell for each sensor in how many "
+          "of these windows it reported motion: 0 means not seen there. Point at a square for its value.",
+      "The target is " + std::to_string(study.target().crosses().size()) +
+          " crosses of two bars, turning on the spot. The sensors' response is " +
+          responses_in_words(study.scene(), study.spec().sensing) + ".",
+      signs_of_maps(study.scene()) +
+          (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
+
+  io::Table table{{"sensor", "mean step", "greatest step", "not seen", "area seen, m²"}, {}};
+  for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
+  table.rows.push_back(row_of("all together", figures.all));
+  report.sections.push_back(
+      {"In numbers",
+       {"Mean step: average difference between two neighbouring squares (sharing a side) that both have motion. "
+        "Greatest step: between any two neighbours. Not seen: share of the squares without any motion. The last row "
+        "takes "
+        "the steps of all sensors, and the area seen by at least one."},
+       {std::move(table)},
+       {}});
+  const std::vector<AreaCoverage> areas = area_figures_of(map, study.scene());
+  if (!areas.empty()) report.sections.push_back(areas_section(areas));
+  io::ReportSection maps{"Maps", {}, {}, {}};
+  if (map.sensors.size() > 1) {
+    io::MapChart chart = map_of_all(study, map);
+    chart.note = "in each square the sensor that reported motion most often there; " +
+                 percent(figures.all.blind_fraction) + " of the squares are seen by none";
+    maps.charts.emplace_back(std::move(chart));
+  }
+  for (std::size_t i = 0; i < map.sensors.size(); ++i) {
+    io::MapChart chart = map_chart(study, map, i);
+    chart.note = "not seen: " + percent(figures.sensors[i].blind_fraction) + " of the squares";
+    maps.charts.emplace_back(std::move(chart));
+  }
+  report.sections.push_back(std::move(maps));
+  return report;
+}
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
@@ -384,22 +386,6 @@ io::Report StudyReport::finish(const Summary& summary) const {
   return report;
 }
 
-namespace {
-
-constexpr double bin_s = 600.0, hour_s = 3600.0, square_m = 0.25;
-
-/// "2026-03-02T08:30:15" in hours of its day.
-double hours_of(const std::string& clock) {
-  const auto two = [&](std::size_t at) { return std::stod(clock.substr(at, 2)); };
-  return two(11) + two(14) / 60.0 + two(17) / hour_s;
-}
-
-std::string count_of(int n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
-
-std::string percents(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
-
-}  // namespace
-
 DayReport::DayReport(const Model& model)
     : model_(&model),
       window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
@@ -411,8 +397,6 @@ DayReport::DayReport(const Model& model)
 }
 
 double DayReport::hour_of(std::size_t bin) const { return from_h_ + (static_cast<double>(bin) + 0.5) * bin_s / hour_s; }
-
-double DayReport::to_h() const { return from_h_ + longest_s_ / hour_s; }
 
 std::string DayReport::time_of(double hours) const { return has_clock_ ? hours_text(hours) : fixed(hours, 2) + " h"; }
 
@@ -487,19 +471,23 @@ void DayReport::note_moment(const RunResult& result) {
 
 std::string DayReport::over_runs() const { return days_ == 1 ? "" : has_clock_ ? " over the days" : " over the runs"; }
 
-void DayReport::set_time_axis(io::LineChart& chart) const {
+io::LineChart DayReport::chart_over_time(const std::string& title, const std::string& note,
+                                         const std::string& y_label) const {
+  io::LineChart chart;
+  chart.title = title;
+  chart.note = note;
+  chart.y_label = y_label;
   chart.x_label = has_clock_ ? "time of day" : "hours since the run began";
   if (has_clock_) chart.x_ticks = io::LineChart::Ticks::clock;
   chart.x_low = from_h_;
-  chart.x_high = to_h();
+  chart.x_high = from_h_ + longest_s_ / hour_s;
+  return chart;
 }
 
 io::LineChart DayReport::people_chart() const {
-  io::LineChart chart;
-  chart.title = "People in the room";
-  chart.note = "mean of every ten minutes" + over_runs() + ", with the least and the most that there were at once";
-  set_time_axis(chart);
-  chart.y_label = "people";
+  io::LineChart chart = chart_over_time(
+      "People in the room",
+      "mean of every ten minutes" + over_runs() + ", with the least and the most that there were at once", "people");
   io::LineChart::Line line;
   double most = 1.0;
   for (std::size_t k = 0; k < bins_.size(); ++k) {
@@ -516,11 +504,7 @@ io::LineChart DayReport::people_chart() const {
 }
 
 io::LineChart DayReport::area_chart() const {
-  io::LineChart chart;
-  chart.title = "People in each area";
-  chart.note = "mean of every ten minutes" + over_runs();
-  set_time_axis(chart);
-  chart.y_label = "people";
+  io::LineChart chart = chart_over_time("People in each area", "mean of every ten minutes" + over_runs(), "people");
   chart.y_high = 0.1;
   for (std::size_t area = 0; area < model_->areas().size(); ++area) {
     io::LineChart::Line& line = chart.lines.emplace_back();
@@ -536,11 +520,8 @@ io::LineChart DayReport::area_chart() const {
 }
 
 io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
-  io::LineChart chart;
-  chart.title = model_->scene().sensors[sensor].id;
-  chart.note = "share of rows with motion in every ten minutes" + over_runs();
-  set_time_axis(chart);
-  chart.y_label = "share";
+  io::LineChart chart = chart_over_time(model_->scene().sensors[sensor].id,
+                                        "share of rows with motion in every ten minutes" + over_runs(), "share");
   io::LineChart::Line line;
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     if (bins_[k].windows == 0.0) continue;
@@ -616,13 +597,15 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   }
   constexpr std::size_t most_lines = 8;  // more can't be told apart
   const bool charts_areas = !areas_.empty() && model_->areas().size() <= most_lines;
-  section.paragraphs.push_back(
-      (has_clock_ ? count_of(days_, "day") + " with somebody there. The first chart tells how many people were in the "
-                                             "room at each time of day, "
-                  : count_of(days_, "run") + " with somebody there. The first chart tells how many people were in the "
-                                             "room as time went on, ") +
-      (charts_areas ? "the second one how many of them were in each area, " : "") +
-      "the next ones how much motion each sensor reported then.");
+  section.paragraphs.push_back((has_clock_
+                                    ? counted(static_cast<std::size_t>(days_), "day") +
+                                          " with somebody there. The first chart tells how many people were in the "
+                                          "room at each time of day, "
+                                    : counted(static_cast<std::size_t>(days_), "run") +
+                                          " with somebody there. The first chart tells how many people were in the "
+                                          "room as time went on, ") +
+                               (charts_areas ? "the second one how many of them were in each area, " : "") +
+                               "the next ones how much motion each sensor reported then.");
   section.charts.emplace_back(people_chart());
   if (charts_areas) section.charts.emplace_back(area_chart());
   if (!areas_.empty()) section.tables.push_back(areas_.table());

@@ -81,10 +81,10 @@ class DayReport {
   [[nodiscard]] io::MapChart floor_chart() const;
   [[nodiscard]] Bin& bin_at(double time_s);
   [[nodiscard]] double hour_of(std::size_t bin) const;
-  [[nodiscard]] double to_h() const;
   [[nodiscard]] std::string time_of(double hours) const;
   [[nodiscard]] std::string over_runs() const;
-  void set_time_axis(io::LineChart& chart) const;
+  [[nodiscard]] io::LineChart chart_over_time(const std::string& title, const std::string& note,
+                                              const std::string& y_label) const;
 
   const Model* model_;
   double window_s_;

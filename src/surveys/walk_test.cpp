@@ -21,48 +21,7 @@
 #include "surveys/sight.hpp"
 #include "surveys/study_report.hpp"
 
-// A walk test in words.
-
 namespace pirsim::studies {
-
-/// Points that could be tried, and those of them that pass.
-struct PassCount {
-  std::size_t tried = 0, passed = 0;
-};
-
-[[nodiscard]] bool passes(const Tries& tries, const WalkRequirement& requirement);
-
-/// What a walk test calls things, and what it says of them. The test outlives it.
-class WalkWords {
- public:
-  explicit WalkWords(const WalkTest& test) : test_(test), spec_(test.spec()) {}
-
-  /// "walker noticed within 1.5 s in at least 90 % of 8 directions: 59 of 63 points pass", without a full stop.
-  [[nodiscard]] std::string of_major(const PassCount& count) const;
-  [[nodiscard]] std::string of_minor(const PassCount& count) const;
-  /// "kitchen (PIR1): walker 3 of 4 points pass, arms 2 of 4"
-  [[nodiscard]] std::string of_area(const std::string& area, const PassCount& major, const PassCount& minor) const;
-  /// Of all tries of minor motion: how many failed, and in how many of those sensors saw what moved.
-  [[nodiscard]] std::string of_deafness(const WalkTestResult& result) const;
-  /// A line, or no text without seats.
-  [[nodiscard]] std::string of_seats(const WalkTestResult& result) const;
-  /// Until when motion counts: "within 1.5 s".
-  [[nodiscard]] std::string time_of_major() const;
-  [[nodiscard]] std::string time_of_minor() const;
-
-  [[nodiscard]] std::string title() const;
-  [[nodiscard]] std::string minor_heading() const;
-  /// What is done, and what the sensors answer by.
-  [[nodiscard]] std::string method() const;
-
- private:
-  [[nodiscard]] std::string required(const WalkRequirement& requirement) const;
-  [[nodiscard]] std::string planes() const;
-
-  const WalkTest& test_;
-  const WalkTestSpec& spec_;
-};
-
 namespace {
 
 double tick_s(const WalkTestSpec& spec) { return 1.0 / spec.sensing.tick_rate_hz; }
@@ -107,6 +66,205 @@ body::Obstacles around_arm(const SceneSpec& scene, const SwingingArmSpec& arm) {
   const bool goes_up = std::ranges::find(arm.swings, ArmSwing::vertical) != arm.swings.end();
   return body::Obstacles(body::footprints(scene.meshes, axis_y - half_m, axis_y + (goes_up ? arm.length_m : half_m)));
 }
+
+// A walk test in words.
+
+/// Where specs and points have a kind of motion.
+struct MotionOf {
+  WalkRequirement WalkTestSpec::*requirement;
+  Tries PointResult::*tries;
+};
+constexpr MotionOf major_motion{&WalkTestSpec::major, &PointResult::major},
+    minor_motion{&WalkTestSpec::minor, &PointResult::minor};
+bool is_major(const MotionOf& motion) { return motion.tries == major_motion.tries; }
+
+std::string plain(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+bool passes(const WalkTestSpec& spec, const MotionOf& motion, const PointResult& point) {
+  const Tries& tries = point.*motion.tries;
+  return tries.made > 0 && *tries.probability() >= (spec.*motion.requirement).probability - 1e-12;
+}
+
+/// Points that could be tried, and those of them that pass.
+struct PassCount {
+  std::size_t tried = 0, passed = 0;
+
+  void add(const WalkTestSpec& spec, const MotionOf& motion, const PointResult& point) {
+    tried += (point.*motion.tries).made > 0 ? 1 : 0;
+    passed += passes(spec, motion, point) ? 1 : 0;
+  }
+  /// "3 of 4"
+  [[nodiscard]] std::string text() const { return std::to_string(passed) + " of " + std::to_string(tried); }
+};
+
+/// Index of the square that holds the point; none beside the grid.
+std::optional<std::size_t> square_at(const FloorGrid& grid, const Vec2& point) {
+  const Vec2 from_corner = (point - grid.centre(0, 0)) / grid.spacing_m() + 0.5;
+  const double column = std::floor(from_corner.x), row = std::floor(from_corner.y);
+  if (column < 0.0 || row < 0.0 || column >= static_cast<double>(grid.n_columns()) ||
+      row >= static_cast<double>(grid.n_rows()))
+    return std::nullopt;
+  return static_cast<std::size_t>(row) * grid.n_columns() + static_cast<std::size_t>(column);
+}
+
+/// Until when motion counts: "within 1.5 s".
+std::string time_of(const WalkTestSpec& spec, const MotionOf& motion) {
+  return is_major(motion) && spec.stop_s ? "before a stop of " + plain(*spec.stop_s) + " s ends"
+                                         : "within " + plain((spec.*motion.requirement).within_s) + " s";
+}
+
+std::string planes(const SwingingArmSpec& arm) {
+  std::vector<std::string> words;
+  for (const ArmSwing plane : arm.swings)
+    words.emplace_back(plane == ArmSwing::horizontal ? "horizontally" : "vertically");
+  return joined(words, " and ");
+}
+
+/// "walker noticed within 1.5 s in at least 90 % of 8 directions: 59 of 63 points pass", without a full stop.
+std::string passes_in_words(const WalkTestSpec& spec, const MotionOf& motion, const WalkTestResult& result) {
+  PassCount count;
+  for (const PointResult& point : result.points) count.add(spec, motion, point);
+  const WalkRequirement& required = spec.*motion.requirement;
+  const std::string who = is_major(motion) ? "walker" : spec.arm ? "swinging arm" : "sitter's arms";
+  return who + " noticed " + time_of(spec, motion) + " in at least " + percent(required.probability) + " of " +
+         std::to_string(required.directions) + " directions" +
+         (spec.arm && !is_major(motion) ? ", " + planes(*spec.arm) : "") + ": " + count.text() + " points pass";
+}
+
+/// Of all tries of minor motion: how many failed, and in how many of those sensors saw what moved.
+std::string deafness_in_words(const WalkTestSpec& spec, const WalkTestResult& result) {
+  int missed = 0, deaf = 0;
+  for (const PointResult& point : result.points) {
+    missed += point.minor.made - point.minor.noticed;
+    deaf += point.minor.deaf;
+  }
+  return "of " + std::to_string(missed) + " tries without notice, sensors saw the " + (spec.arm ? "arm" : "sitter") +
+         " in " + std::to_string(deaf);
+}
+
+/// A line, or no text without seats.
+std::string seats_in_words(const WalkTest& test, const WalkTestResult& result) {
+  const auto named = [](const std::string& seats) { return seats.empty() ? " none" : seats; };
+  if (test.scene().seats.empty()) return {};
+  if (!test.spec().arm) {
+    std::string noticed, deaf, unseen;
+    for (const SeatResult& seat : result.seats) {
+      (seat.noticed ? noticed : seat.deaf ? deaf : unseen) += " " + seat.seat;
+    }
+    return "seats where a sitter's arms are noticed:" + named(noticed) + "; seen, but not noticed:" + named(deaf) +
+           "; unseen:" + named(unseen);
+  }
+  std::string outside;
+  for (const SeatSpec& seat : test.scene().seats) {
+    const std::optional<std::size_t> at = square_at(result.grid, floor_point(seat.world_from_seat.origin));
+    if (!at || !passes(test.spec(), minor_motion, result.points[*at])) outside += " " + seat.id;
+  }
+  return "seats in squares that fail:" + named(outside);
+}
+
+/// What is done, and what the sensors answer by.
+std::string method_in_words(const WalkTest& test) {
+  const std::string response =
+      ". A try counts as noticed if any sensor reports motion in time; the sensors' response is " +
+      responses_in_words(test.scene(), test.spec().sensing) + ".";
+  std::string text =
+      "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
+      "and ";
+  if (!test.spec().arm) {
+    return text + "sits there facing several ways and moves both forearms (minor motion)" + response +
+           " In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.";
+  }
+  const SwingingArmSpec& arm = *test.spec().arm;
+  text += "a box of " + plain(arm.width_m) + " x " + plain(arm.width_m) + " x " + plain(arm.length_m) +
+          " m, whose axis is " + plain(arm.height_m) + " m above the floor, swings by " + plain(arm.swing_deg) +
+          " degrees and back at " + plain(arm.deg_per_s) + " degrees a second, " + planes(arm) + " (minor motion)";
+  return text + response;
+}
+
+/// "kitchen (PIR1): walker 3 of 4 points pass, arms 2 of 4": a line an area.
+std::vector<std::string> passes_by_area(const WalkTest& test, const WalkTestResult& result) {
+  const Areas areas(test.scene());
+  const FloorGrid& grid = test.grid();
+  std::vector<PassCount> walks(areas.size()), arms(areas.size());
+  each_square(grid, [&](std::size_t column, std::size_t row) {
+    if (areas.empty()) return;
+    const PointResult& point = result.points[row * grid.n_columns() + column];
+    const std::size_t area = areas.at(grid.centre(column, row));
+    walks[area].add(test.spec(), major_motion, point);
+    arms[area].add(test.spec(), minor_motion, point);
+  });
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    lines.push_back(with_sensors(test.scene(), areas, i) + ": walker " + walks[i].text() + " points pass, " +
+                    (test.spec().arm ? "arm " : "arms ") + arms[i].text());
+  }
+  return lines;
+}
+
+io::MapChart map_of(const WalkTest& test, const std::string& title, const std::string& label) {
+  const FloorGrid& grid = test.grid();
+  io::MapChart chart;
+  chart.title = title;
+  chart.label = label;
+  chart.lower = grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m());
+  chart.spacing_m = grid.spacing_m();
+  chart.columns = static_cast<int>(grid.n_columns());
+  chart.rows = static_cast<int>(grid.n_rows());
+  chart.plan = plan_of(test.scene());
+  for (const SensorSpec& sensor : test.scene().sensors) chart.markers.push_back(marker_of(sensor));
+  return chart;
+}
+
+io::ReportSection motion_section(const std::string& heading, const WalkTest& test, const WalkTestResult& result,
+                                 const MotionOf& motion) {
+  const WalkTestSpec& spec = test.spec();
+  std::string finding = passes_in_words(spec, motion, result);
+  finding[0] = static_cast<char>(finding[0] - 'a' + 'A');
+  if (!is_major(motion)) finding += "; " + deafness_in_words(spec, result);
+  io::ReportSection section{heading, {finding + "."}, {}, {}};
+  io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
+  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
+  pass.colours = io::MapChart::Colours::pass_or_fail;
+  probability.note = time_of(spec, motion) + "; no colour: nothing could be tried there";
+  pass.note = "required: " + percent((spec.*motion.requirement).probability);
+  probability.unit = "of the tries noticed";
+  for (const PointResult& point : result.points) {
+    const Tries& tries = point.*motion.tries;
+    probability.values.push_back(tries.probability());
+    pass.values.push_back(tries.made == 0 ? std::nullopt : std::optional(passes(spec, motion, point) ? 1.0 : 0.0));
+  }
+  section.charts = {std::move(probability), std::move(pass)};
+  return section;
+}
+
+struct PointLine {
+  std::string x_m, z_m;  ///< with all decimals
+  const PointResult& point;
+  std::string_view major, minor;
+};
+
+constexpr Column<PointLine> point_lines[]{
+    {{"x_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.x_m; }},
+    {{"z_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.z_m; }},
+    {{"major_tries", Holds::count, "walks across it that are possible"},
+     [](const PointLine& line) -> Cell { return line.point.major.made; }},
+    {{"major_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
+     [](const PointLine& line) -> Cell { return line.point.major.noticed; }},
+    {{"major", Holds::text, "`pass`, `fail`, or `untried` where nobody can walk"},
+     [](const PointLine& line) -> Cell { return line.major; }},
+    {{"minor_tries", Holds::count, "movements of arms over it"},
+     [](const PointLine& line) -> Cell { return line.point.minor.made; }},
+    {{"minor_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
+     [](const PointLine& line) -> Cell { return line.point.minor.noticed; }},
+    {{"minor", Holds::text, "`pass`, `fail`, or `untried` where nobody can sit"},
+     [](const PointLine& line) -> Cell { return line.minor; }},
+    {{"minor_deaf", Holds::count, "of those without notice, in which a sensor saw what moved"},
+     [](const PointLine& line) -> Cell { return line.point.minor.deaf; }},
+};
 
 }  // namespace
 
@@ -269,26 +427,18 @@ SeatResult WalkTester::try_seat(const SeatSpec& seat, std::uint32_t number) {
   return {seat.id, tries.noticed > 0, tries.deaf > 0};
 }
 
-WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {
+WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const RowDone& row_done) {
   const FloorGrid& grid = test.grid();
   WalkTestResult result{grid, {}, {}};
-  ordered_parallel<std::vector<PointResult>>(
-      grid.n_rows(), threads,
-      [&](std::size_t row) {
-        WalkTester tester(test);
-        std::vector<PointResult> points(grid.n_columns());
-        for (std::size_t column = 0; column < grid.n_columns(); ++column) {
-          if (grid.on_floor(column, row)) {
-            points[column] =
-                tester.try_point(grid.centre(column, row), static_cast<std::uint32_t>(row * grid.n_columns() + column));
-          }
-        }
-        return points;
-      },
-      [&](std::vector<PointResult>& points) {
-        result.points.insert(result.points.end(), points.begin(), points.end());
-        row_done();
-      });
+  result.points = row_by_row<PointResult>(grid, threads, row_done, [&](std::size_t row) {
+    WalkTester tester(test);
+    std::vector<PointResult> points(grid.n_columns());
+    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
+      const auto number = static_cast<std::uint32_t>(row * grid.n_columns() + column);
+      if (grid.on_floor(column, row)) points[column] = tester.try_point(grid.centre(column, row), number);
+    }
+    return points;
+  });
   if (test.spec().arm) return result;  // it sits nowhere
   WalkTester tester(test);
   auto number = static_cast<std::uint32_t>(grid.n_rows() * grid.n_columns());
@@ -296,292 +446,54 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
   return result;
 }
 
-}  // namespace pirsim::studies
-
-namespace pirsim {
-
-WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads, const RowDone& row_done) {
-  const studies::WalkTest test(std::move(scene), std::move(spec));
-  std::size_t n_done = 0;
-  return studies::run_walk_test(test, threads, [&] {
-    ++n_done;
-    if (row_done) row_done(n_done, test.grid().n_rows());
-  });
-}
-
-}  // namespace pirsim
-
-namespace pirsim::studies {
-namespace {
-
-std::string plain(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-std::string seconds(double value) { return plain(value) + " s"; }
-
-/// "3 of 4"
-std::string told(const PassCount& count) { return std::to_string(count.passed) + " of " + std::to_string(count.tried); }
-
-/// Index of the square that holds the point; none beside the grid.
-std::optional<std::size_t> square_at(const FloorGrid& grid, const Vec2& point) {
-  const Vec2 from_corner = (point - grid.centre(0, 0)) / grid.spacing_m() + 0.5;
-  const double column = std::floor(from_corner.x), row = std::floor(from_corner.y);
-  if (column < 0.0 || row < 0.0 || column >= static_cast<double>(grid.n_columns()) ||
-      row >= static_cast<double>(grid.n_rows()))
-    return std::nullopt;
-  return static_cast<std::size_t>(row) * grid.n_columns() + static_cast<std::size_t>(column);
-}
-
-}  // namespace
-
-bool passes(const Tries& tries, const WalkRequirement& requirement) {
-  return tries.made > 0 && *tries.probability() >= requirement.probability - 1e-12;
-}
-
-std::string WalkWords::time_of_major() const {
-  return spec_.stop_s ? "before a stop of " + seconds(*spec_.stop_s) + " ends"
-                      : "within " + seconds(spec_.major.within_s);
-}
-
-std::string WalkWords::time_of_minor() const { return "within " + seconds(spec_.minor.within_s); }
-
-std::string WalkWords::required(const WalkRequirement& requirement) const {
-  return "in at least " + percent(requirement.probability) + " of " + std::to_string(requirement.directions) +
-         " directions";
-}
-
-std::string WalkWords::planes() const {
-  std::vector<std::string> words;
-  for (const ArmSwing plane : spec_.arm->swings)
-    words.emplace_back(plane == ArmSwing::horizontal ? "horizontally" : "vertically");
-  return joined(words, " and ");
-}
-
-std::string WalkWords::of_major(const PassCount& count) const {
-  return "walker noticed " + time_of_major() + " " + required(spec_.major) + ": " + told(count) + " points pass";
-}
-
-std::string WalkWords::of_minor(const PassCount& count) const {
-  const std::string arm = spec_.arm ? required(spec_.minor) + ", " + planes() : "";
-  return (spec_.arm ? "swinging arm noticed " + time_of_minor() + " " + arm
-                    : "sitter's arms noticed " + time_of_minor() + " " + required(spec_.minor)) +
-         ": " + told(count) + " points pass";
-}
-
-std::string WalkWords::of_area(const std::string& area, const PassCount& major, const PassCount& minor) const {
-  return area + ": walker " + told(major) + " points pass, " + (spec_.arm ? "arm " : "arms ") + told(minor);
-}
-
-std::string WalkWords::of_deafness(const WalkTestResult& result) const {
-  int missed = 0, deaf = 0;
-  for (const PointResult& point : result.points) {
-    missed += point.minor.made - point.minor.noticed;
-    deaf += point.minor.deaf;
-  }
-  return "of " + std::to_string(missed) + " tries without notice, sensors saw the " + (spec_.arm ? "arm" : "sitter") +
-         " in " + std::to_string(deaf);
-}
-
-std::string WalkWords::of_seats(const WalkTestResult& result) const {
-  const auto named = [](const std::string& seats) { return seats.empty() ? " none" : seats; };
-  if (!spec_.arm) {
-    std::string noticed, deaf, unseen;
-    for (const SeatResult& seat : result.seats) {
-      (seat.noticed ? noticed : seat.deaf ? deaf : unseen) += " " + seat.seat;
-    }
-    if (result.seats.empty()) return {};
-    return "seats where a sitter's arms are noticed:" + named(noticed) + "; seen, but not noticed:" + named(deaf) +
-           "; unseen:" + named(unseen);
-  }
-  std::string outside;
-  for (const SeatSpec& seat : test_.scene().seats) {
-    const std::optional<std::size_t> at = square_at(result.grid, floor_point(seat.world_from_seat.origin));
-    if (!at || !passes(result.points[*at].minor, spec_.minor)) outside += " " + seat.id;
-  }
-  if (test_.scene().seats.empty()) return {};
-  return "seats in squares that fail:" + named(outside);
-}
-
-std::string WalkWords::title() const { return spec_.name + ": walk test of " + test_.scene().name; }
-
-std::string WalkWords::minor_heading() const {
-  return spec_.arm ? "Minor motion: a swinging arm" : "Minor motion: arms of a sitter";
-}
-
-std::string WalkWords::method() const {
-  const std::string response =
-      ". A try counts as noticed if any sensor reports motion in time; the sensors' response is " +
-      responses_in_words(test_.scene(), spec_.sensing) + ".";
-  std::string text =
-      "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
-      "and ";
-  if (!spec_.arm) {
-    return text + "sits there facing several ways and moves both forearms (minor motion)" + response +
-           " In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.";
-  }
-  const SwingingArmSpec& arm = *spec_.arm;
-  text += "a box of " + plain(arm.width_m) + " x " + plain(arm.width_m) + " x " + plain(arm.length_m) +
-          " m, whose axis is " + plain(arm.height_m) + " m above the floor, swings by " + plain(arm.swing_deg) +
-          " degrees and back at " + plain(arm.deg_per_s) + " degrees a second, " + planes() + " (minor motion)";
-  return text + response;
-}
-
-namespace {
-
-PassCount count_passes(const WalkTestResult& result, Tries PointResult::*motion, const WalkRequirement& requirement) {
-  PassCount count;
-  for (const PointResult& point : result.points) {
-    if ((point.*motion).made == 0) continue;
-    ++count.tried;
-    count.passed += passes(point.*motion, requirement) ? 1 : 0;
-  }
-  return count;
-}
-
-/// Of the points of each area. A line each; none without areas.
-std::vector<std::string> passes_by_area(const WalkTest& test, const WalkTestResult& result) {
-  const Areas areas(test.scene());
-  const FloorGrid& grid = test.grid();
-  std::vector<PassCount> major(areas.size()), minor(areas.size());
-  const auto note = [](const Tries& tries, const WalkRequirement& requirement, PassCount& count) {
-    if (tries.made == 0) return;
-    ++count.tried;
-    count.passed += passes(tries, requirement) ? 1 : 0;
-  };
-  for (std::size_t i = 0; i < result.points.size() && !areas.empty(); ++i) {
-    const std::size_t column = i % grid.n_columns(), row = i / grid.n_columns();
-    if (!grid.on_floor(column, row)) continue;
-    const std::size_t area = areas.at(grid.centre(column, row));
-    note(result.points[i].major, test.spec().major, major[area]);
-    note(result.points[i].minor, test.spec().minor, minor[area]);
-  }
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < areas.size(); ++i)
-    lines.push_back(WalkWords(test).of_area(with_sensors(test.scene(), areas, i), major[i], minor[i]));
-  return lines;
-}
-
-io::MapChart map_of(const WalkTest& test, const std::string& title, const std::string& label) {
-  const FloorGrid& grid = test.grid();
-  io::MapChart chart;
-  chart.title = title;
-  chart.label = label;
-  chart.lower = grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m());
-  chart.spacing_m = grid.spacing_m();
-  chart.columns = static_cast<int>(grid.n_columns());
-  chart.rows = static_cast<int>(grid.n_rows());
-  chart.plan = plan_of(test.scene());
-  for (const SensorSpec& sensor : test.scene().sensors) {
-    chart.markers.push_back(
-        {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)});
-  }
-  return chart;
-}
-
-void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
-              Tries PointResult::*motion, const WalkRequirement& requirement, const std::string& time) {
-  io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
-  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
-  pass.colours = io::MapChart::Colours::pass_or_fail;
-  probability.note = time + "; no colour: nothing could be tried there";
-  pass.note = "required: " + percent(requirement.probability);
-  probability.unit = "of the tries noticed";
-  for (const PointResult& point : result.points) {
-    const Tries& tries = point.*motion;
-    probability.values.push_back(tries.probability());
-    pass.values.push_back(tries.made == 0 ? std::nullopt : std::optional(passes(tries, requirement) ? 1.0 : 0.0));
-  }
-  section.charts.emplace_back(std::move(probability));
-  section.charts.emplace_back(std::move(pass));
-}
-
-std::string capitalised(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
-}  // namespace
-
-namespace {
-
-struct PointLine {
-  std::string x_m, z_m;  ///< with all decimals
-  const PointResult& point;
-  std::string_view major, minor;
-};
-
-constexpr Column<PointLine> point_lines[]{
-    {{"x_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.x_m; }},
-    {{"z_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.z_m; }},
-    {{"major_tries", Holds::count, "walks across it that are possible"},
-     [](const PointLine& line) -> Cell { return line.point.major.made; }},
-    {{"major_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
-     [](const PointLine& line) -> Cell { return line.point.major.noticed; }},
-    {{"major", Holds::text, "`pass`, `fail`, or `untried` where nobody can walk"},
-     [](const PointLine& line) -> Cell { return line.major; }},
-    {{"minor_tries", Holds::count, "movements of arms over it"},
-     [](const PointLine& line) -> Cell { return line.point.minor.made; }},
-    {{"minor_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
-     [](const PointLine& line) -> Cell { return line.point.minor.noticed; }},
-    {{"minor", Holds::text, "`pass`, `fail`, or `untried` where nobody can sit"},
-     [](const PointLine& line) -> Cell { return line.minor; }},
-    {{"minor_deaf", Holds::count, "of those without notice, in which a sensor saw what moved"},
-     [](const PointLine& line) -> Cell { return line.point.minor.deaf; }},
-};
-
-}  // namespace
-
 std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
   constexpr int decimals = 4;
   std::ostringstream out;
   io::TableWriter<PointLine> csv(out, std::span<const Column<PointLine>>(point_lines));
-  const FloorGrid& grid = test.grid();
-  const auto verdict = [](const Tries& tries, const WalkRequirement& requirement) -> std::string_view {
-    return tries.made == 0 ? "untried" : passes(tries, requirement) ? "pass" : "fail";
+  const auto verdict = [&](const PointResult& point, const MotionOf& motion) -> std::string_view {
+    return (point.*motion.tries).made == 0 ? "untried" : passes(test.spec(), motion, point) ? "pass" : "fail";
   };
-  for (std::size_t row = 0; row < grid.n_rows(); ++row) {
-    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
-      if (!grid.on_floor(column, row)) continue;
-      const Vec2 centre = grid.centre(column, row);
-      const PointResult& point = result.points[row * grid.n_columns() + column];
-      csv.write({fixed(centre.x, decimals), fixed(centre.y, decimals), point, verdict(point.major, test.spec().major),
-                 verdict(point.minor, test.spec().minor)});
-    }
-  }
+  each_square(test.grid(), [&](std::size_t column, std::size_t row) {
+    const Vec2 centre = test.grid().centre(column, row);
+    const PointResult& point = result.points[row * test.grid().n_columns() + column];
+    csv.write({fixed(centre.x, decimals), fixed(centre.y, decimals), point, verdict(point, major_motion),
+               verdict(point, minor_motion)});
+  });
   return out.str();
 }
 
 std::string to_text(const WalkTest& test, const WalkTestResult& result) {
-  const WalkWords words(test);
-  const std::string seats = words.of_seats(result);
-  std::string text = words.of_major(count_passes(result, &PointResult::major, test.spec().major)) + "\n" +
-                     words.of_minor(count_passes(result, &PointResult::minor, test.spec().minor)) + "; " +
-                     words.of_deafness(result) + "\n" + (seats.empty() ? "" : seats + "\n");
+  const std::string seats = seats_in_words(test, result);
+  std::string text = passes_in_words(test.spec(), major_motion, result) + "\n" +
+                     passes_in_words(test.spec(), minor_motion, result) + "; " +
+                     deafness_in_words(test.spec(), result) + "\n" + (seats.empty() ? "" : seats + "\n");
   for (const std::string& line : passes_by_area(test, result)) text += "  " + line + "\n";
   return text;
 }
 
 io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) {
-  const WalkTestSpec& spec = test.spec();
-  const WalkWords words(test);
+  const bool has_arm = test.spec().arm.has_value();
   io::Report report;
-  report.title = words.title();
-  report.paragraphs = {words.method(), signs_of_maps(test.scene())};
+  report.title = test.spec().name + ": walk test of " + test.scene().name;
+  report.paragraphs = {method_in_words(test), signs_of_maps(test.scene())};
   const std::vector<std::string> by_area = passes_by_area(test, result);
   if (!by_area.empty())
     report.paragraphs.push_back("By area (its sensors in brackets): " + joined(by_area, "; ") + ".");
-  io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{words.minor_heading(), {}, {}, {}};
-  major.paragraphs = {capitalised(words.of_major(count_passes(result, &PointResult::major, spec.major))) + "."};
-  minor.paragraphs = {capitalised(words.of_minor(count_passes(result, &PointResult::minor, spec.minor))) + "; " +
-                      words.of_deafness(result) + "."};
-  const std::string seats = words.of_seats(result);
-  if (!seats.empty()) minor.paragraphs.push_back((spec.arm ? "In all, " : "Facing as the seats do, ") + seats + ".");
-  add_maps(major, test, result, &PointResult::major, spec.major, words.time_of_major());
-  add_maps(minor, test, result, &PointResult::minor, spec.minor, words.time_of_minor());
-  report.sections = {std::move(major), std::move(minor)};
+  report.sections = {motion_section("Major motion: walking", test, result, major_motion),
+                     motion_section(has_arm ? "Minor motion: a swinging arm" : "Minor motion: arms of a sitter", test,
+                                    result, minor_motion)};
+  const std::string seats = seats_in_words(test, result);
+  if (!seats.empty())
+    report.sections.back().paragraphs.push_back((has_arm ? "In all, " : "Facing as the seats do, ") + seats + ".");
   return report;
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+
+WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads, const RowDone& row_done) {
+  return studies::run_walk_test(studies::WalkTest(std::move(scene), std::move(spec)), threads, row_done);
+}
+
+}  // namespace pirsim

@@ -1,7 +1,6 @@
 // A walk test, compiled and tried point by point.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,8 +8,8 @@
 #include "engine/body/ground.hpp"
 #include "engine/body/skeleton.hpp"
 #include "engine/sim/observer.hpp"
+#include "pirsim/coverage.hpp"
 #include "pirsim/scene.hpp"
-#include "pirsim/walk_test.hpp"
 #include "show/report.hpp"
 #include "surveys/coverage.hpp"
 
@@ -89,9 +88,8 @@ class WalkTester {
   std::vector<std::uint8_t> triggers_;
 };
 
-/// threads 0: all cores; changes nothing in the result. `row_done` is called after each row of points.
-[[nodiscard]] WalkTestResult run_walk_test(
-    const WalkTest& test, unsigned threads = 0, const std::function<void()>& row_done = [] {});
+/// threads 0: all cores; changes nothing in the result.
+[[nodiscard]] WalkTestResult run_walk_test(const WalkTest& test, unsigned threads = 0, const RowDone& row_done = {});
 
 /// x_m, z_m, and for major and minor motion the tries, how many were noticed, and pass or fail.
 [[nodiscard]] std::string to_csv(const WalkTest& test, const WalkTestResult& result);

@@ -1,7 +1,6 @@
 // Coverage and a walk test from a program: how often each sensor saw the target, and how many points passed.
 #include <pirsim/coverage.hpp>
 #include <pirsim/io.hpp>
-#include <pirsim/walk_test.hpp>
 
 #include <cstdint>
 #include <iostream>

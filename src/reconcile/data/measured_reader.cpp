@@ -17,7 +17,6 @@
 #include "model/schema/columns.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/csv.hpp"
-#include "pirsim/log_facts.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -68,7 +68,7 @@ double share_of(const Cover& cover, std::size_t n) {
   for (std::size_t start = 0; start < 5; ++start) {
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < n; ++i) chosen.push_back((start * 397 + i * 131) % cover.covered.size());
-    most = std::max(most, cover.worth_of(best_cover(cover, chosen)));
+    most = std::max(most, cover.worth_of(best_of(cover, chosen)));
   }
   return static_cast<double>(most) / static_cast<double>(cover.worth.size());
 }

@@ -1,5 +1,5 @@
 // What a log tells by itself, where it is known what it should.
-#include "pirsim/log_facts.hpp"
+#include "pirsim/log.hpp"
 
 #include <random>
 

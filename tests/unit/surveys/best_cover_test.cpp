@@ -51,8 +51,8 @@ TEST_CASE("chosen candidates cover nearly what the best subset of all does, and 
   for (unsigned seed = 0; seed < n_cases; ++seed) {
     const Cover cover = random_cover(seed, 12, 30);
     const std::uint64_t most = most_of_all(cover, 4);
-    const std::uint64_t greedy = cover.worth_of(greedy_cover(cover, 4));
-    const std::uint64_t best = cover.worth_of(best_cover(cover, {0, 1, 2, 3}));
+    const std::uint64_t greedy = cover.worth_of(greedy(cover, 4));
+    const std::uint64_t best = cover.worth_of(best_of(cover, {0, 1, 2, 3}));
     INFO(seed);
     CHECK(static_cast<double>(greedy) >= (1.0 - std::exp(-1.0)) * static_cast<double>(most));
     CHECK(best >= greedy);
@@ -66,16 +66,16 @@ TEST_CASE("chosen candidates cover nearly what the best subset of all does, and 
 TEST_CASE("an exchange mends what greed spoils: the middle one covers most, both sides without it everything",
           "[best_cover]") {
   const Cover cover{{1, 1, 1, 1, 1, 1}, {{0, 1, 2}, {1, 2, 3, 4}, {3, 4, 5}}};
-  CHECK(greedy_cover(cover, 2) == std::vector<std::size_t>{1, 0});
-  CHECK(cover.worth_of(greedy_cover(cover, 2)) == 5);
-  std::vector<std::size_t> best = best_cover(cover, {0, 1});
+  CHECK(greedy(cover, 2) == std::vector<std::size_t>{1, 0});
+  CHECK(cover.worth_of(greedy(cover, 2)) == 5);
+  std::vector<std::size_t> best = best_of(cover, {0, 1});
   std::ranges::sort(best);
   CHECK(best == std::vector<std::size_t>{0, 2});
 }
 
 TEST_CASE("no candidate is taken twice, though none adds anything", "[best_cover]") {
   const Cover cover{{1}, {{0}, {}, {}}};
-  std::vector<std::size_t> all = best_cover(cover, {2, 1, 0});
+  std::vector<std::size_t> all = best_of(cover, {2, 1, 0});
   std::ranges::sort(all);
   CHECK(all == std::vector<std::size_t>{0, 1, 2});
   CHECK(cover.worth_of(all) == 1);

@@ -161,7 +161,7 @@ TEST_CASE("of random columns the search finds what no other set beats, nearly al
       }
     }
     LightSearch search(rows, light);
-    const std::vector<std::size_t> found = search.best({5, 6, 7});
+    const std::vector<std::size_t> found = best_of(search, {5, 6, 7});
     REQUIRE(found.size() == 3);
     CHECK_FALSE(search.of(found).better_than(least));
     CHECK_FALSE(search.of({5, 6, 7}).better_than(search.of(found)));
