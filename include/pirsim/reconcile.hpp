@@ -44,13 +44,13 @@ struct Measured {
     double seconds = 0.0;
   };
   Kind kind = Kind::series;
-  std::vector<Series> runs;     ///< of series: by trial, then replicate, numbered from 1 in every trial
-  std::vector<Sum> sums;        ///< of sums; cells that aren't there weren't measured
-  std::vector<DataNote> notes;  ///< what was done with which rows
-  std::string file;             ///< its name, for messages
-  std::string digest;           ///< SHA-256 of the file
-  bool tells_phases = true;     ///< or all rows are taken for the counted ones
-  std::vector<double> holds_s;  ///< (n_sensors) how long motion is held, as a log tells; 0: it doesn't. Or empty
+  std::vector<Series> runs;        ///< of series: by trial, then replicate, numbered from 1 in every trial
+  std::vector<Sum> sums;           ///< of sums; cells that aren't there weren't measured
+  std::vector<std::string> notes;  ///< what was done with which rows
+  std::string file;                ///< its name, for messages
+  std::string digest;              ///< SHA-256 of the file
+  bool tells_phases = true;        ///< or all rows are taken for the counted ones
+  std::vector<double> holds_s;     ///< (n_sensors) how long motion is held, as a log tells; 0: it doesn't. Or empty
 
   [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
   [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured
@@ -100,33 +100,9 @@ struct Settings {
 [[nodiscard]] Settings settings_of(const ScriptSpec& script, double alpha, double budget,
                                    const std::vector<std::string>& effects);
 
-/// What an analysis does now.
-struct Stage {
-  enum class What {
-    pilot_runs,
-    reference_table,
-    comparing,             ///< where they differ, and which effects can have made the data
-    checking_model,        ///< with `effects` applied
-    looking_for_more,      ///< beside `effects`
-    explaining_residuals,  ///< if nothing of the catalogue fits
-    verifying,             ///< on held-out trials
-    injecting_faults,      ///< of the self-test, as all that follows but the last
-    judging,
-    judging_without,  ///< by a catalogue that lacks `effects`
-    judging_planned,  ///< of a plan: what is planned
-    judging_trial,    ///< with `effects`' only element, a trial, once more
-    judging_all_again,
-    judging_walk,
-    judging_empty_room,
-    judging_series  ///< instead of sums
-  };
-  What what = What::pilot_runs;
-  std::vector<std::string> effects = {};
-};
-
 /// What a caller may tell its user while it waits. Functions may be empty.
 struct Observer {
-  std::function<void(const Stage&)> stage;
+  std::function<void(const std::string& what)> stage;  ///< what the analysis does now, in a few words
   /// Of the table's realizations: begins with 0, goes up by one for each that is simulated, by more for what was kept.
   std::function<void(std::uint32_t done, std::uint32_t total)> progress;
 };
@@ -137,7 +113,7 @@ struct Context {
   unsigned threads = 0;    ///< 0: all cores; never changes a result
   Observer observer = {};
 
-  void begin(const Stage& stage) const {
+  void begin(const std::string& stage) const {
     if (observer.stage) observer.stage(stage);
   }
 };
@@ -152,13 +128,12 @@ struct Context {
 [[nodiscard]] std::string sentence(const Outcome& outcome);
 /// What else a reader must know of the verdict, a sentence or two each.
 [[nodiscard]] std::vector<std::string> details(const Outcome& outcome);
+[[nodiscard]] std::string sentence(const Residuals& residuals);
+/// Beside the effects of a verdict; empty if nothing is left over.
+[[nodiscard]] std::string sentence_of_rest(const Residuals& rest);
 /// Why an effect was kept or dropped.
 [[nodiscard]] std::string in_words(const Candidate& candidate);
-[[nodiscard]] std::string in_words(const FeatureName& feature);
-[[nodiscard]] std::string in_words(const DataNote& note);
 [[nodiscard]] std::string in_words(const DataFinding& finding);
-[[nodiscard]] std::string in_words(const TrailEvent& event);
-[[nodiscard]] std::string in_words(const Stage& stage);
 
 /// The script with the named effects added, which plain `pirsim` runs. Nothing is added if the data are faulty.
 [[nodiscard]] ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome);

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "pirsim/effects.hpp"
@@ -53,46 +52,19 @@ struct FamilyScore {
   [[nodiscard]] bool is_sure() const noexcept { return probability >= 0.75; }
 };
 
-/// Why an effect was kept or dropped.
-namespace reason {
-struct NotRuledOut {  ///< kept
-  double p = 0.0;
+/// Why an effect was kept or dropped, in words.
+struct Reason {
+  /// Where the verdict's sentence says more of it.
+  enum class What {
+    other,
+    hardly_simulated,     ///< people can hardly get about with it in this room
+    like_impostors,       ///< what only resembles it makes such data more often than it does itself
+    refused_when_applied  ///< with it applied the model still differs, and nothing explains the rest
+  };
+  std::string decision = {};  ///< "Kept", "Dropped"; empty: `why` says it too
+  std::string why = {};
+  What what = What::other;
 };
-struct Sure {  ///< kept, though data of its own seldom look like these
-  double p = 0.0, probability = 0.0;
-};
-struct MayBeNone {};  ///< kept, but not named: its strength may as well be none
-struct LessLikely {   ///< not ruled out, but another is named
-  double p = 0.0, probability = 0.0;
-  std::string named;
-  double probability_of_named = 0.0;
-};
-struct Improbable {  ///< dropped: all that isn't ruled out is improbable together
-  double p = 0.0;
-};
-struct LikeImpostors {  ///< dropped: what only resembles it makes such data more often than it does itself
-  double p_own = 0.0;
-};
-struct HardlySimulated {};  ///< dropped: people can hardly get about with it in this room
-struct RuledOut {           ///< dropped by one test or both
-  std::optional<double> p_relative, p_absolute;
-  double least_p = 0.0;  ///< that either test can give
-};
-struct RefusedWhenApplied {  ///< dropped: with it applied the model still differs, and nothing explains the rest
-  double p = 0.0, least_p = 0.0;
-};
-struct DoesBetter {  ///< kept: a relative of the effect that would have been named, applied to the model
-  double p = 0.0;
-  std::string named;
-  double p_of_named = 0.0;
-};
-struct SameAs {  ///< judged as that effect, which changes the model in the same way
-  std::string effect;
-};
-}  // namespace reason
-using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone, reason::LessLikely,
-                            reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
-                            reason::RefusedWhenApplied, reason::DoesBetter, reason::SameAs>;
 
 /// What became of one effect of the catalogue.
 struct Candidate {
@@ -113,40 +85,9 @@ struct LocatedCell {
 };
 /// What a number that data are turned into is of.
 struct FeatureName {
-  enum class Kind {
-    cell,      ///< `statistic` of a trial and a sensor, as all that follow against the plain model
-    sensor,    ///< mean over the trials
-    trial,     ///< mean over the sensors
-    mean,      ///< over all cells, or all trials
-    size,      ///< the same of its size, whatever its sign
-    greatest,  ///< of all cells
-    least,
-    slope,              ///< over all cells, on `other`: what is expected or known of a cell
-    first_less_second,  ///< of the sensors in order of their means
-    last_but_one_less_last,
-    first_less_last,
-    share_of_time,  ///< of a sensor's motion (empty: all sensors'), in `part` of `n_parts` parts of the time
-    together,       ///< odds that `sensor` moves while `other`, a sensor, does
-    most_together,  ///< of all pairs
-    least_together,
-    likeness,        ///< of all cells' seconds to those of the model
-    likeness_gained  ///< by permuting trials or sensors
-  };
-  enum class Permutation {
-    trials_shifted,  ///< by one
-    trials_shifted_back,
-    trials_reversed,
-    two_trials_swapped,
-    sensors_shifted,
-    sensors_shifted_back,
-    sensors_reversed,
-    two_sensors_swapped
-  };
-  Kind kind = Kind::cell;
-  std::string trial = {}, sensor = {}, statistic = {};
-  std::string other = {};
-  std::size_t part = 0, n_parts = 0;  ///< part: from 1 on
-  Permutation permutation = Permutation::trials_shifted;
+  std::string text;            ///< "S1 PIR1 seconds"
+  std::string statistic = {};  ///< of them what is measured, whoever's it is
+  std::string place = {};      ///< and whose it is; empty: as the text says
   bool operator==(const FeatureName&) const = default;
 };
 /// A number that the global test looks at, with its band, in the number's own scale.
@@ -239,77 +180,17 @@ struct Verification {
   bool closed = false;   ///< shrunk, the plain model is refused there and the patched one is not
 };
 
-/// One thing that the bits do and the model doesn't: which sensors, when, and what they do.
+/// One thing that the bits do and the model doesn't.
 struct ResidualDriver {
-  enum class Who { all_sensors, sensor, trial, near_seat, far_from_seat, faced, behind };
-  enum class When {
-    always,
-    first_half,
-    second_half,
-    first_third,
-    middle_third,
-    last_third,
-    of_minute,            ///< from, to: seconds of each minute
-    after_posture,        ///< from, to: seconds after each change of posture
-    before_posture,       ///< to - from: seconds before each change of posture
-    of_arm_cycle,         ///< from, to: shares of the arm's cycle in percent
-    wave,                 ///< from: the period in seconds; to: the second of its top
-    from_trial,           ///< `since` and all runs after it, in the order of the session: the script's, again and again
-    from_trial_to_trial,  ///< more and more
-  };
-  enum class How {
-    more,
-    more_where_little,
-    more_where_much,
-    opposite,
-    beside,
-    with_gaps,       ///< motion has more gaps of some seconds than expected, whatever motion there is
-    silent_together  ///< all sensors at the same moments, oftener than by chance
-  };
-  Who who = Who::all_sensors;
-  std::string name;  ///< of the sensor or the trial
-  When when = When::always;
-  double from = 0.0, to = 0.0;
-  How how = How::more;
-  bool up = true;         ///< or the contrary: less motion, silence
-  std::string beside;     ///< of How::beside: the other sensor
+  std::string who = {}, when = {}, what = {};  ///< sensors or trial, times (or empty), what they do: in words
   double log_odds = 0.0;  ///< of a logistic regression of the bits on this driver and those before it
   double standard_error = 0.0;
-  double z = 0.0;          ///< the score against that of simulated datasets, in their standard deviations
-  double p = 1.0;          ///< that the strongest of all drivers tried is so strong in a dataset of the model
-  std::string since = {};  ///< of When::from_trial: the trial, with the run's number if there are several
-  double least_p = 0.0;    ///< no data give a smaller p
+  double z = 0.0;        ///< the score against that of simulated datasets, in their standard deviations
+  double p = 1.0;        ///< that the strongest of all drivers tried is so strong in a dataset of the model
+  double least_p = 0.0;  ///< no data give a smaller p
 };
 struct Residuals {
   std::vector<ResidualDriver> drivers;  ///< strongest first; none: the residuals follow nothing that was tried
-};
-
-/// What was done with which measured rows, or what is odd about them.
-struct DataNote {
-  enum class What {
-    sums_empty,       ///< n sums
-    cells_absent,     ///< n cells of trials that are there
-    sensors_absent,   ///< names: no column
-    phases_unknown,   ///< names: the counted phases, for which all rows are taken
-    rows_missing,     ///< n
-    readings_empty,   ///< n
-    runs_unread,      ///< n runs without a reading in the counted phases (names)
-    trials_absent,    ///< names
-    lead_left_out,    ///< what comes before the counted phases, of n runs
-    tail_left_out,    ///< what comes after them
-    runs_begin_late,  ///< n runs begin in a counted phase
-    runs_end_early,   ///< n runs end before any simulated one
-    runs_go_on,       ///< n runs go on after any simulated one
-    people_unused,    ///< a column `people`
-    effects_idle,     ///< names: effects that mean nothing to any sensor of the study, and aren't looked for
-    log_read,         ///< n lines; names: seconds between readings (empty: events), those of the script's windows
-    hold_told,        ///< n pulses; names: the sensor, seconds
-    people_differ,    ///< in n windows; names: of how many, the first one's time, the data's count, the script's
-    days_absent       ///< n rows outside of the script's runs
-  };
-  What what = What::rows_missing;
-  std::size_t n = 0;
-  std::vector<std::string> names = {};
 };
 
 /// What is wrong or odd with the measured rows themselves. It is found by what chance, and the model's own runs, can
@@ -325,16 +206,16 @@ struct DataFinding {
     all_silent,        ///< places: one, in which all sensors are silent
     silent_column      ///< sensors: one, without any 1
   };
-  /// Rows from 1 on, gaps counted, both ends included.
-  struct Place {
+  /// Of one run, from 1 on, gaps counted, both ends included.
+  struct Rows {
     std::string trial = {};
     int replicate = 1;
     std::size_t from_row = 0, to_row = 0;
-    bool operator==(const Place&) const = default;
+    bool operator==(const Rows&) const = default;
   };
   What what = What::equal_columns;
   std::vector<std::string> sensors = {};
-  std::vector<Place> places = {};
+  std::vector<Rows> places = {};
   std::size_t n_rows = 0;        ///< of the file, or of each place
   std::size_t n_exceptions = 0;  ///< of columns: rows in which only one of them changes
   double every_s = 0.0;
@@ -347,61 +228,6 @@ inline constexpr std::array<std::string_view, 8> data_finding_names{
 [[nodiscard]] constexpr std::string_view name(DataFinding::What what) noexcept {
   return data_finding_names[static_cast<std::size_t>(what)];
 }
-
-/// The decisions of an analysis, in order.
-namespace trail {
-struct Begun {
-  std::string digest;  ///< of the data
-  std::uint64_t seed = 0;
-};
-struct HeldOut {
-  std::vector<std::string> trials;
-};
-struct Table {
-  std::string key;
-  std::size_t n_datasets = 0, n_left_out = 0;
-};
-struct Tested {
-  double p = 1.0;        ///< of the global test
-  double least_p = 0.0;  ///< no data give a smaller one
-};
-struct NotRuledOut {
-  std::vector<std::string> hypotheses;  ///< `nothing` among them, first
-};
-struct IncludesOff {
-  std::string effect;
-};
-struct AtRangeEnd {
-  RangeEnd end;
-};
-struct LookedForMore {
-  Verdict verdict = Verdict::no_disagreement;
-};
-struct Explained {
-  Residuals residuals;
-  FamilyScore family;
-};
-struct LeftOver {
-  Residuals residuals;
-};
-struct JudgedOnHeldOut {
-  Verification verification;
-};
-enum class Remark {
-  relative_does_better,    ///< the name is taken back: applied in its place, a relative makes such data oftener
-  may_be_none,             ///< the name is taken back
-  refused_when_applied,    ///< the name is taken back: the model with it can't have made the data
-  no_partner,              ///< no effect may explain the rest beside the one applied: nothing more is simulated
-  nothing_more_simulated,  ///< people can hardly get about in that model: nothing more is looked for in it
-  sums_without_residuals,  ///< sums don't tell when motion was seen
-  one_trial_only,          ///< nothing can be held out
-  patched_impassable,      ///< people can hardly get about in the patched model
-  held_out_too_weak        ///< the held-out trials alone don't refuse the plain model
-};
-}  // namespace trail
-using TrailEvent = std::variant<trail::Begun, DataNote, DataFinding, trail::HeldOut, trail::Table, trail::Tested,
-                                trail::NotRuledOut, trail::IncludesOff, trail::AtRangeEnd, Look, trail::LookedForMore,
-                                trail::Explained, trail::LeftOver, trail::JudgedOnHeldOut, trail::Remark>;
 
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
@@ -429,8 +255,8 @@ struct Outcome {
   double calibration_error = 0.0;
   std::string table_key;
   std::vector<std::string> looked_for;  ///< effects, if not the whole catalogue
-  std::vector<DataNote> notes;          ///< beside the data's own
-  std::vector<TrailEvent> trail;
+  std::vector<std::string> notes;       ///< of the data, beside their own
+  std::vector<std::string> trail;       ///< the decisions, in order, a line each
 };
 
 }  // namespace pirsim::reconcile

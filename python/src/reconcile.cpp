@@ -36,14 +36,14 @@ reconcile::Settings settings_of(const Question& question, const ScriptSpec& scri
 }
 
 /// What was repaired or ignored, as an InputWarning each.
-nb::list warnings(const SceneSpec& scene, const ScriptSpec& script, const std::vector<reconcile::DataNote>& of_data,
-                  const std::vector<reconcile::DataNote>& of_analysis) {
+nb::list warnings(const SceneSpec& scene, const ScriptSpec& script, const std::vector<std::string>& of_data,
+                  const std::vector<std::string>& of_analysis) {
   nb::list told;
   for (const auto* issues : {&scene.warnings, &script.warnings}) {
     for (const Issue& issue : *issues) told.append(to_python(to_string(issue)));
   }
   for (const auto* notes : {&of_data, &of_analysis}) {
-    for (const reconcile::DataNote& note : *notes) told.append(to_python(reconcile::in_words(note)));
+    for (const std::string& note : *notes) told.append(to_python(note));
   }
   return told;
 }
@@ -93,7 +93,7 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
     const auto stop = [&] {
       if (job.stop) throw Job::Stopped{};
     };
-    context.observer.stage = [&](const reconcile::Stage&) { stop(); };
+    context.observer.stage = [&](const std::string&) { stop(); };
     context.observer.progress = [&](std::uint32_t done, std::uint32_t total) {
       job.n_all = total;
       job.n_done = done;

@@ -71,9 +71,9 @@ void require_writable(const std::filesystem::path& folder) {
   const io::AtomicFile never_committed(folder / "report.json");
 }
 
-void tell_notes(const std::vector<reconcile::DataNote>& notes, Verbosity verbosity) {
+void tell_notes(const std::vector<std::string>& notes, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
-  for (const reconcile::DataNote& note : notes) std::cerr << reconcile::in_words(note) << '\n';
+  for (const std::string& note : notes) std::cerr << note << '\n';
 }
 
 /// Tells stages and progress on standard error, and lets a signal stop the analysis at the end of any of them: the
@@ -83,11 +83,11 @@ class AnalysisTeller {
   explicit AnalysisTeller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] reconcile::Observer observer() {
     reconcile::Observer observer;
-    observer.stage = [this](const reconcile::Stage& stage) {
+    observer.stage = [this](const std::string& stage) {
       stop_.throw_if_made();
       progress_.reset();
       told_ = 0;
-      stage_ = reconcile::in_words(stage);
+      stage_ = stage;
       if (verbosity_ != Verbosity::quiet) std::cerr << stage_ << " ...\n";
       progress_.emplace(Work{.what = stage_}, verbosity_);
     };

@@ -38,6 +38,101 @@ Eigen::VectorXd off_centre(std::span<const float> features, std::span<const doub
   return as_eigen(features).cast<double>() - as_eigen(centre);
 }
 
+NormalLayers::Layer fit_layer(const Matrix<double>& rows) {
+  const ShrunkCovariance shrunk = ledoit_wolf(rows);
+  Eigen::MatrixXd covariance = as_eigen(shrunk.covariance);
+  // Coordinates have variance 1 within classes; a layer that doesn't vary at all along one still has a width.
+  covariance.diagonal().array() += 1e-6;
+  const Eigen::MatrixXd whitening =
+      detail::Cholesky(covariance).solve_lower(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  return {shrunk.mean, detail::to_matrix(whitening), whitening.diagonal().array().log().sum()};
+}
+
+double squared_distance(const NormalLayers::Layer& layer, std::span<const double> place) {
+  const Eigen::VectorXd off = as_eigen(place) - as_eigen(std::span<const double>(layer.mean));
+  return (as_eigen(layer.whitening).triangularView<Eigen::Lower>() * off).squaredNorm();
+}
+
+double log_density(const NormalLayers::Layer& layer, std::span<const double> place) {
+  return layer.log_determinant - 0.5 * squared_distance(layer, place);
+}
+
+/// Leading right singular vectors by subspace iteration from random directions. Ref: [Halko2011]
+Eigen::MatrixXd leading_directions(const Eigen::MatrixXd& rows, Eigen::Index count, Stream stream) {
+  Eigen::MatrixXd basis(rows.cols(), std::min(rows.cols(), count + 10));
+  for (double& value : basis.reshaped()) value = stream.normal();
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    basis = detail::orthonormal(rows.transpose() * (rows * basis));
+  }
+  return basis * detail::right_singular_vectors(rows * basis).leftCols(count);
+}
+
+/// 1 and the squares and products of the first coordinates, each in its standard deviations.
+Eigen::VectorXd products(const Eigen::VectorXd& place, std::span<const double> spread, std::size_t curved) {
+  const auto count = static_cast<Eigen::Index>(std::min(curved, spread.size()));
+  Eigen::VectorXd values(1 + count * (count + 1) / 2);
+  values(0) = 1.0;
+  Eigen::Index next = 1;
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      values(next++) =
+          place(i) * place(j) / (spread[static_cast<std::size_t>(i)] * spread[static_cast<std::size_t>(j)]);
+  return values;
+}
+
+/// Takes the bend off the residuals and returns it, (1 + n_products x n_columns).
+Eigen::MatrixXd take_off_bend(const Eigen::MatrixXd& places, std::span<const double> spread, std::size_t curved,
+                              Eigen::MatrixXd& residuals) {
+  Eigen::MatrixXd design(places.rows(), products(places.row(0), spread, curved).size());
+  for (Eigen::Index r = 0; r < places.rows(); ++r) design.row(r) = products(places.row(r), spread, curved);
+  const Eigen::MatrixXd bend = detail::shortest_least_squares(design, residuals);
+  residuals -= design * bend;
+  return bend;
+}
+
+/// One over the class's own standard deviations. A feature that hardly varies in the class is taken to vary by a
+/// hundredth of what it does in all classes: assumed, so that rounding doesn't make rows strange.
+Eigen::RowVectorXd find_scale(const Eigen::MatrixXd& centred, const Eigen::RowVectorXd& pooled_sd) {
+  const Eigen::RowVectorXd sd = (centred.colwise().squaredNorm() / static_cast<double>(centred.rows())).cwiseSqrt();
+  return sd.cwiseMax(0.01 * pooled_sd).unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
+}
+
+void describe_residuals(const Eigen::MatrixXd& residuals, ClassShapes::Shape& shape) {
+  const ShrunkCovariance shrunk = ledoit_wolf(detail::to_matrix(residuals));
+  Eigen::MatrixXd covariance = as_eigen(shrunk.covariance);
+  covariance.diagonal().array() += 1e-9;
+  shape.precision = Matrix<float>(shrunk.covariance.rows(), shrunk.covariance.columns());
+  as_eigen(shape.precision) =
+      detail::Cholesky(covariance).solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols())).cast<float>();
+}
+
+ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVectorXd& pooled_sd,
+                             const ClassShapesSettings& settings, std::uint32_t index) {
+  Eigen::MatrixXd rows = as_eigen(features).cast<double>();
+  const auto n = static_cast<double>(rows.rows());
+  // Directions beyond a quarter of the rows would follow their noise, beyond a quarter of the columns leave nothing.
+  const Eigen::Index count =
+      std::min<Eigen::Index>({static_cast<Eigen::Index>(settings.subspace), rows.rows() / 4, rows.cols() / 4});
+  ClassShapes::Shape shape;
+  const Eigen::RowVectorXd mean = rows.colwise().mean();
+  rows.rowwise() -= mean;
+  const Eigen::RowVectorXd scale = find_scale(rows, pooled_sd);
+  rows.array().rowwise() *= scale.array();
+  shape.mean.assign(mean.begin(), mean.end());
+  shape.scale.assign(scale.begin(), scale.end());
+
+  const Eigen::MatrixXd directions =
+      leading_directions(rows, count, Stream({settings.seed, index, 0, Purpose::projection}));
+  const Eigen::MatrixXd places = rows * directions;
+  rows -= places * directions.transpose();
+  for (Eigen::Index k = 0; k < count; ++k)
+    shape.spread.push_back(std::max(1e-6, std::sqrt(places.col(k).squaredNorm() / n)));
+  shape.directions = detail::to_matrix<float>(directions.transpose());
+  shape.bend = detail::to_matrix<float>(take_off_bend(places, shape.spread, settings.curved, rows));
+  describe_residuals(rows, shape);
+  return shape;
+}
+
 }  // namespace
 
 ShrunkCovariance ledoit_wolf(const Matrix<double>& rows) {
@@ -68,7 +163,6 @@ Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const in
   fitted.centre_.assign(centre.begin(), centre.end());
   fitted.directions_ = detail::to_matrix(unwhitened.transpose() * inverse.asDiagonal());
   fitted.class_means_ = detail::to_matrix(whitened.transpose() * basis);
-  fitted.shrinkage_ = within.shrinkage;
   return fitted;
 }
 
@@ -103,35 +197,6 @@ std::vector<double> Discriminant::log_densities_at(std::span<const double> place
   }
   return logs;
 }
-
-std::vector<double> Discriminant::probabilities(std::span<const float> features) const {
-  return detail::softmax(log_densities(features));
-}
-
-namespace {
-
-using detail::as_eigen;
-
-NormalLayers::Layer fit_layer(const Matrix<double>& rows) {
-  const ShrunkCovariance shrunk = ledoit_wolf(rows);
-  Eigen::MatrixXd covariance = as_eigen(shrunk.covariance);
-  // Coordinates have variance 1 within classes; a layer that doesn't vary at all along one still has a width.
-  covariance.diagonal().array() += 1e-6;
-  const Eigen::MatrixXd whitening =
-      detail::Cholesky(covariance).solve_lower(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
-  return {shrunk.mean, detail::to_matrix(whitening), whitening.diagonal().array().log().sum()};
-}
-
-double squared_distance(const NormalLayers::Layer& layer, std::span<const double> place) {
-  const Eigen::VectorXd off = as_eigen(place) - as_eigen(std::span<const double>(layer.mean));
-  return (as_eigen(layer.whitening).triangularView<Eigen::Lower>() * off).squaredNorm();
-}
-
-double log_density(const NormalLayers::Layer& layer, std::span<const double> place) {
-  return layer.log_determinant - 0.5 * squared_distance(layer, place);
-}
-
-}  // namespace
 
 NormalLayers NormalLayers::fit(const Matrix<double>& places, std::span<const int> labels, int n_classes,
                                const NormalLayersSettings& settings) {
@@ -212,88 +277,6 @@ std::vector<double> MixtureDiscriminant::probabilities_at(std::span<const double
   for (std::size_t part = 0; part < parts.size(); ++part) probabilities[class_of_[part]] += parts[part];
   return probabilities;
 }
-
-namespace {
-
-using detail::as_eigen;
-
-/// Leading right singular vectors by subspace iteration from random directions. Ref: [Halko2011]
-Eigen::MatrixXd leading_directions(const Eigen::MatrixXd& rows, Eigen::Index count, Stream stream) {
-  Eigen::MatrixXd basis(rows.cols(), std::min(rows.cols(), count + 10));
-  for (double& value : basis.reshaped()) value = stream.normal();
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    basis = detail::orthonormal(rows.transpose() * (rows * basis));
-  }
-  return basis * detail::right_singular_vectors(rows * basis).leftCols(count);
-}
-
-/// 1 and the squares and products of the first coordinates, each in its standard deviations.
-Eigen::VectorXd products(const Eigen::VectorXd& place, std::span<const double> spread, std::size_t curved) {
-  const auto count = static_cast<Eigen::Index>(std::min(curved, spread.size()));
-  Eigen::VectorXd values(1 + count * (count + 1) / 2);
-  values(0) = 1.0;
-  Eigen::Index next = 1;
-  for (Eigen::Index i = 0; i < count; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      values(next++) =
-          place(i) * place(j) / (spread[static_cast<std::size_t>(i)] * spread[static_cast<std::size_t>(j)]);
-  return values;
-}
-
-/// Takes the bend off the residuals and returns it, (1 + n_products x n_columns).
-Eigen::MatrixXd take_off_bend(const Eigen::MatrixXd& places, std::span<const double> spread, std::size_t curved,
-                              Eigen::MatrixXd& residuals) {
-  Eigen::MatrixXd design(places.rows(), products(places.row(0), spread, curved).size());
-  for (Eigen::Index r = 0; r < places.rows(); ++r) design.row(r) = products(places.row(r), spread, curved);
-  const Eigen::MatrixXd bend = detail::shortest_least_squares(design, residuals);
-  residuals -= design * bend;
-  return bend;
-}
-
-/// One over the class's own standard deviations. A feature that hardly varies in the class is taken to vary by a
-/// hundredth of what it does in all classes: assumed, so that rounding doesn't make rows strange.
-Eigen::RowVectorXd find_scale(const Eigen::MatrixXd& centred, const Eigen::RowVectorXd& pooled_sd) {
-  const Eigen::RowVectorXd sd = (centred.colwise().squaredNorm() / static_cast<double>(centred.rows())).cwiseSqrt();
-  return sd.cwiseMax(0.01 * pooled_sd).unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 0.0; });
-}
-
-void describe_residuals(const Eigen::MatrixXd& residuals, ClassShapes::Shape& shape) {
-  const ShrunkCovariance shrunk = ledoit_wolf(detail::to_matrix(residuals));
-  Eigen::MatrixXd covariance = as_eigen(shrunk.covariance);
-  covariance.diagonal().array() += 1e-9;
-  shape.precision = Matrix<float>(shrunk.covariance.rows(), shrunk.covariance.columns());
-  as_eigen(shape.precision) =
-      detail::Cholesky(covariance).solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols())).cast<float>();
-}
-
-ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVectorXd& pooled_sd,
-                             const ClassShapesSettings& settings, std::uint32_t index) {
-  Eigen::MatrixXd rows = as_eigen(features).cast<double>();
-  const auto n = static_cast<double>(rows.rows());
-  // Directions beyond a quarter of the rows would follow their noise, beyond a quarter of the columns leave nothing.
-  const Eigen::Index count =
-      std::min<Eigen::Index>({static_cast<Eigen::Index>(settings.subspace), rows.rows() / 4, rows.cols() / 4});
-  ClassShapes::Shape shape;
-  const Eigen::RowVectorXd mean = rows.colwise().mean();
-  rows.rowwise() -= mean;
-  const Eigen::RowVectorXd scale = find_scale(rows, pooled_sd);
-  rows.array().rowwise() *= scale.array();
-  shape.mean.assign(mean.begin(), mean.end());
-  shape.scale.assign(scale.begin(), scale.end());
-
-  const Eigen::MatrixXd directions =
-      leading_directions(rows, count, Stream({settings.seed, index, 0, Purpose::projection}));
-  const Eigen::MatrixXd places = rows * directions;
-  rows -= places * directions.transpose();
-  for (Eigen::Index k = 0; k < count; ++k)
-    shape.spread.push_back(std::max(1e-6, std::sqrt(places.col(k).squaredNorm() / n)));
-  shape.directions = detail::to_matrix<float>(directions.transpose());
-  shape.bend = detail::to_matrix<float>(take_off_bend(places, shape.spread, settings.curved, rows));
-  describe_residuals(rows, shape);
-  return shape;
-}
-
-}  // namespace
 
 ClassShapes ClassShapes::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                              const ClassShapesSettings& settings) {

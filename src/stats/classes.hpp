@@ -31,8 +31,6 @@ class Discriminant {
   [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
   /// Log densities of a row that has been projected.
   [[nodiscard]] std::vector<double> log_densities_at(std::span<const double> place) const;
-  /// (n_classes) softmax of log_densities(); too sure of itself where the classes aren't normal: calibrate.
-  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// (n_directions <= n_classes - 1) coordinates along the directions that part the class means best, within-class
   /// variance 1, ordered by how much they part them.
   [[nodiscard]] std::vector<double> project(std::span<const float> features) const;
@@ -40,13 +38,11 @@ class Discriminant {
   [[nodiscard]] Matrix<double> project(const Matrix<float>& features, std::size_t n_coordinates,
                                        unsigned threads = 0) const;
   [[nodiscard]] std::size_t n_directions() const noexcept { return directions_.rows(); }
-  [[nodiscard]] double shrinkage() const noexcept { return shrinkage_; }
 
  private:
   std::vector<double> centre_;  ///< (n_columns) taken off first
   Matrix<double> directions_;   ///< (n_directions x n_columns)
   Matrix<double> class_means_;  ///< (n_classes x n_directions) projected
-  double shrinkage_ = 0.0;
 };
 
 // Classes as layers of normal distributions: how likely is a row in each class, and is it likely at all.

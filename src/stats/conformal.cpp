@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 
 #include "model/core/parallel.hpp"
 #include "stats/intervals.hpp"
@@ -25,16 +24,33 @@ double margin(std::span<const double> probabilities, std::size_t k) {
 
 std::vector<std::vector<std::size_t>> checked_blocks(std::vector<std::vector<std::size_t>> blocks,
                                                      std::size_t columns) {
-  if (blocks.empty()) {
-    blocks.emplace_back(columns);
-    std::iota(blocks[0].begin(), blocks[0].end(), std::size_t{0});
-  }
+  if (blocks.empty()) blocks.push_back(numbers_to(columns));
   for (const auto& block : blocks) {
     require(!block.empty(), "classes: a block without columns");
     for (const std::size_t column : block)
       require(column < columns, "classes: a block names a column that isn't there");
   }
   return blocks;
+}
+
+constexpr std::size_t fewest_impostors = 10;  ///< and twice as many own rows (assumed)
+/// Log densities further than this from what is usual in the class tell no more; 20, 40, 80, 150 and 300 were tried.
+constexpr double farthest = 80.0;
+constexpr double ridge = 1.0;  ///< of standardised columns; 0.1, 1 and 10 were tried: no difference
+
+/// Which class the row is taken for if `unknown` is none of them.
+std::size_t likeliest_without(std::span<const double> log_densities, std::size_t unknown) {
+  std::size_t best = unknown == 0 ? 1 : 0;
+  for (std::size_t k = 0; k < log_densities.size(); ++k) {
+    if (k != unknown && log_densities[k] > log_densities[best]) best = k;
+  }
+  return best;
+}
+
+std::vector<double> clipped(std::span<const double> log_densities, double centre) {
+  std::vector<double> values;
+  for (const double value : log_densities) values.push_back(std::clamp(value - centre, -farthest, farthest));
+  return values;
 }
 
 }  // namespace
@@ -80,7 +96,7 @@ void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<con
       [&](std::vector<double>& row) {
         const auto own = static_cast<std::size_t>(labels[next]);
         margins_[own].push_back(margin(calibration_probabilities().row(next), own));
-        measures_of[own].append_row(std::span<const double>(row));
+        measures_of[own].append_row(row);
         ++next;
       });
   for (const Matrix<double>& own : measures_of) strangest_.emplace_back(own);
@@ -96,14 +112,6 @@ Classification ConformalClassifier::classify(std::span<const float> features) co
     result.p.push_back(std::min(1.0, 2.0 * std::min(result.p_relative[k], result.p_absolute[k])));
   }
   return result;
-}
-
-std::vector<Classification> ConformalClassifier::classify(const Matrix<float>& features, unsigned threads) const {
-  std::vector<Classification> all;
-  ordered_parallel<Classification>(
-      features.rows(), threads, [&](std::size_t row) { return classify(features.row(row)); },
-      [&](Classification& one) { all.push_back(std::move(one)); });
-  return all;
 }
 
 double conformal_p(std::span<const double> calibration, double score) {
@@ -137,30 +145,6 @@ double StrangestMeasure::p(std::span<const double> row) const {
   return conformal_p(strangest, own);
 }
 
-namespace {
-
-constexpr std::size_t fewest_impostors = 10;  ///< and twice as many own rows (assumed)
-/// Log densities further than this from what is usual in the class tell no more; 20, 40, 80, 150 and 300 were tried.
-constexpr double farthest = 80.0;
-constexpr double ridge = 1.0;  ///< of standardised columns; 0.1, 1 and 10 were tried: no difference
-
-/// Which class the row is taken for if `unknown` is none of them.
-std::size_t likeliest_without(std::span<const double> log_densities, std::size_t unknown) {
-  std::size_t best = unknown == 0 ? 1 : 0;
-  for (std::size_t k = 0; k < log_densities.size(); ++k) {
-    if (k != unknown && log_densities[k] > log_densities[best]) best = k;
-  }
-  return best;
-}
-
-std::vector<double> clipped(std::span<const double> log_densities, double centre) {
-  std::vector<double> values;
-  for (const double value : log_densities) values.push_back(std::clamp(value - centre, -farthest, farthest));
-  return values;
-}
-
-}  // namespace
-
 ImpostorTests::Test ImpostorTests::learn(std::size_t k, const Matrix<double>& log_densities,
                                          std::span<const int> labels, const Split& split) {
   Test test;
@@ -176,7 +160,7 @@ ImpostorTests::Test ImpostorTests::learn(std::size_t k, const Matrix<double>& lo
   for (const std::size_t row : split.fitting) {
     const auto label = static_cast<std::size_t>(labels[row]);
     if (label == 0 || likeliest_without(log_densities.row(row), label == k ? none : label) != k) continue;
-    columns.append_row(std::span<const double>(clipped(log_densities.row(row), test.centre)));
+    columns.append_row(clipped(log_densities.row(row), test.centre));
     is_impostor.push_back(label == k ? 0 : 1);
     n_impostors += is_impostor.back();
   }

@@ -62,8 +62,6 @@ class ConformalClassifier {
                                                const ConformalSettings& settings = {},
                                                std::span<const int> subclasses = {});
   [[nodiscard]] Classification classify(std::span<const float> features) const;
-  /// One a row.
-  [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 
   /// The least p that class k can have: that of a row stranger than all of its calibration rows.
   [[nodiscard]] double least_p(std::size_t k) const noexcept {

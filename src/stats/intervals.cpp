@@ -10,61 +10,13 @@
 #include <vector>
 
 #include "model/core/parallel.hpp"
-#include "pirsim/random.hpp"
 #include "stats/linear_algebra.hpp"
 #include "stats/matrix.hpp"
 
 namespace pirsim::stats {
 namespace {
 
-using boost::math::binomial_distribution;
-
-}  // namespace
-
-double quantile(std::span<const double> sample, double probability) {
-  std::vector<double> sorted(sample.begin(), sample.end());
-  std::sort(sorted.begin(), sorted.end());
-  return sorted_quantile(sorted, probability);
-}
-
-double sorted_quantile(std::span<const double> sample, double probability) {
-  require(!sample.empty(), "quantile: empty sample");
-  require(probability >= 0.0 && probability <= 1.0, "quantile: probability outside [0, 1]");
-  const double place = probability * static_cast<double>(sample.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sample.size() - 1);
-  return sample[below] + (place - static_cast<double>(below)) * (sample[above] - sample[below]);
-}
-
-Interval clopper_pearson(std::size_t hits, std::size_t trials, double confidence) {
-  require(trials > 0 && hits <= trials, "clopper_pearson: hits must lie between 0 and a positive number of trials");
-  require(confidence > 0.0 && confidence < 1.0, "clopper_pearson: confidence must lie between 0 and 1");
-  const double tail = 0.5 * (1.0 - confidence);
-  const auto n = static_cast<double>(trials), k = static_cast<double>(hits);
-  return {hits == 0 ? 0.0 : binomial_distribution<>::find_lower_bound_on_p(n, k, tail),
-          hits == trials ? 1.0 : binomial_distribution<>::find_upper_bound_on_p(n, k, tail)};
-}
-
-double sign_test_greater(std::size_t positive, std::size_t negative) {
-  if (positive == 0) return 1.0;
-  const binomial_distribution<> signs(static_cast<double>(positive + negative), 0.5);
-  return boost::math::cdf(boost::math::complement(signs, static_cast<double>(positive) - 1.0));
-}
-
-Interval mean_interval(std::span<const double> values, double confidence) {
-  require(values.size() > 1, "mean_interval: fewer than two values");
-  require(confidence > 0.0 && confidence < 1.0, "mean_interval: confidence must lie between 0 and 1");
-  const auto n = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-  double squares = 0.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  const boost::math::students_t_distribution<> student(n - 1.0);
-  const double reach = boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - confidence))) *
-                       std::sqrt(squares / (n - 1.0) / n);
-  return {mean - reach, mean + reach};
-}
-
-namespace {
+using detail::as_eigen;
 
 std::vector<double> sorted(std::span<const double> values) {
   std::vector<double> copy(values.begin(), values.end());
@@ -78,60 +30,13 @@ double distance(std::span<const double> a, std::span<const double> b) {
   return std::sqrt(squares);
 }
 
-}  // namespace
-
-double crps(std::span<const double> ensemble, double observed) {
-  require(!ensemble.empty(), "crps: no member");
-  const std::vector<double> x = sorted(ensemble);
-  const auto n = static_cast<double>(x.size());
-  double error = 0.0, pairs = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    error += std::abs(x[i] - observed);
-    pairs += x[i] * (2.0 * static_cast<double>(i) + 1.0 - n);  // sum over i < j of x_j - x_i
-  }
-  return error / n - pairs / (n * n);
-}
-
-double energy_score(const Matrix<double>& ensemble, std::span<const double> observed) {
-  require(ensemble.rows() > 0, "energy_score: no member");
-  require(ensemble.columns() == observed.size(), "energy_score: members and observation differ in length");
-  const auto n = static_cast<double>(ensemble.rows());
-  double error = 0.0, pairs = 0.0;
-  for (std::size_t i = 0; i < ensemble.rows(); ++i) {
-    error += distance(ensemble.row(i), observed);
-    for (std::size_t j = 0; j < i; ++j) pairs += distance(ensemble.row(i), ensemble.row(j));
-  }
-  return error / n - pairs / (n * n);
-}
-
-double area_between(std::span<const double> a, std::span<const double> b) {
-  require(!a.empty() && !b.empty(), "area_between: empty sample");
-  const std::vector<double> x = sorted(a), y = sorted(b);
-  double area = 0.0, at = std::min(x.front(), y.front());
-  for (std::size_t i = 0, j = 0; i < x.size() || j < y.size();) {
-    const double next = j == y.size() || (i < x.size() && x[i] <= y[j]) ? x[i] : y[j];
-    const double height =
-        static_cast<double>(i) / static_cast<double>(x.size()) - static_cast<double>(j) / static_cast<double>(y.size());
-    area += std::abs(height) * (next - at);
-    at = next;
-    while (i < x.size() && x[i] == next) ++i;
-    while (j < y.size() && y[j] == next) ++j;
-  }
-  return area;
-}
-
-namespace {
-
-using detail::as_eigen;
-
 double median(std::vector<double> values) { return stats::quantile(values, 0.5); }
 
 /// Median absolute deviation of each column from its median; 1 where that is 0.
 std::vector<double> column_scales(const Matrix<double>& rows) {
   std::vector<double> scales;
   for (std::size_t c = 0; c < rows.columns(); ++c) {
-    std::vector<double> values;
-    for (std::size_t r = 0; r < rows.rows(); ++r) values.push_back(rows(r, c));
+    std::vector<double> values = rows.column(c);
     const double centre = median(values);
     for (double& value : values) value = std::abs(value - centre);
     const double scale = median(std::move(values));
@@ -163,8 +68,7 @@ Accepted accept_nearest(const Matrix<double>& statistics, std::span<const double
     distances[r] = std::sqrt(distances[r]);
   }
   Accepted accepted;
-  accepted.rows.resize(statistics.rows());
-  std::iota(accepted.rows.begin(), accepted.rows.end(), std::size_t{0});
+  accepted.rows = numbers_to(statistics.rows());
   std::stable_sort(accepted.rows.begin(), accepted.rows.end(),
                    [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
   const auto kept = static_cast<std::size_t>(std::ceil(share * static_cast<double>(statistics.rows())));
@@ -190,7 +94,200 @@ Eigen::MatrixXd adjust(const Eigen::MatrixXd& parameters, const Eigen::MatrixXd&
   return parameters - off * coefficients.bottomRows(off.cols());
 }
 
+// How extreme each row is in any entry: ranks of the values of one entry, from the smallest up.
+
+/// Calls use(begin, end) for every run of equal values.
+template <typename Use>
+void for_each_tie(const std::vector<double>& sorted, const Use& use) {
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
+    use(begin, end);
+  }
+}
+
+/// Place of sorted[i] between its neighbours, in (0, n). Ref: [Hahn2015] in the form of [Myllymaki2024].
+template <typename Sorted>
+double continuous_rank(const Sorted& sorted, std::size_t n, std::size_t i) {
+  const std::size_t last = n - 1;
+  if (i == 0) return std::exp(-(sorted[1] - sorted[0]) / (sorted[last] - sorted[1]));
+  if (i == last) {
+    return static_cast<double>(n) - std::exp(-(sorted[last] - sorted[last - 1]) / (sorted[last - 1] - sorted[0]));
+  }
+  return static_cast<double>(i) + (sorted[i] - sorted[i - 1]) / (sorted[i + 1] - sorted[i - 1]);
+}
+
+/// Rank of each of the equal values sorted[begin] to sorted[end - 1]. Of a tied pair the formula of continuous_rank
+/// gives the middle too, except at an end.
+template <typename Sorted>
+double shared_rank(const Sorted& sorted, std::size_t n, std::size_t begin, std::size_t end) {
+  return end - begin > 1 ? 0.5 * static_cast<double>(begin + end) : continuous_rank(sorted, n, begin);
+}
+
+/// (n_rows) Ranks from the smallest value up; from the largest down they are n_rows less these.
+std::vector<double> ranks_of(const std::vector<double>& values) {
+  const std::vector<double> ascending = sorted(values);
+  std::vector<double> ranks(values.size());
+  for_each_tie(ascending, [&](std::size_t begin, std::size_t end) {
+    std::fill(ranks.begin() + static_cast<std::ptrdiff_t>(begin), ranks.begin() + static_cast<std::ptrdiff_t>(end),
+              shared_rank(ascending, ascending.size(), begin, end));
+  });
+  std::vector<double> of_values;
+  for (const double value : values)
+    of_values.push_back(
+        ranks[static_cast<std::size_t>(std::ranges::lower_bound(ascending, value) - ascending.begin())]);
+  return of_values;
+}
+
+/// Ranks of every entry from below.
+Matrix<double> rank_columns(const Matrix<double>& rows, unsigned threads) {
+  Matrix<double> from_below(rows.rows(), rows.columns());
+  std::size_t column = 0;
+  ordered_parallel<std::vector<double>>(
+      rows.columns(), threads, [&](std::size_t c) { return ranks_of(rows.column(c)); },
+      [&](std::vector<double>& ranks) {
+        for (std::size_t r = 0; r < rows.rows(); ++r) from_below(r, column) = ranks[r];
+        ++column;
+      });
+  return from_below;
+}
+
+/// (n_rows x n_columns) per row its pointwise ranks from the nearer side, smallest first.
+Matrix<double> sorted_ranks(const Matrix<double>& from_below) {
+  Matrix<double> sorted = from_below;
+  const auto n = static_cast<double>(sorted.rows());
+  for (double& rank : sorted.values()) rank = std::min(rank, n - rank);
+  for (std::size_t r = 0; r < sorted.rows(); ++r) std::sort(sorted.row(r).begin(), sorted.row(r).end());
+  return sorted;
+}
+
+std::vector<double> share_at_least_as_extreme(const Matrix<double>& sorted) {
+  const std::size_t n = sorted.rows();
+  const auto less = [&](std::size_t a, std::size_t b) {
+    const auto x = sorted.row(a), y = sorted.row(b);
+    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  };
+  std::vector<std::size_t> order = numbers_to(n);
+  std::sort(order.begin(), order.end(), less);
+  std::vector<double> share(n);
+  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+    while (end < n && !less(order[begin], order[end])) ++end;
+    for (std::size_t i = begin; i < end; ++i) share[order[i]] = static_cast<double>(end) / static_cast<double>(n);
+  }
+  return share;
+}
+
+/// The envelope excludes the first row's entry once all rows at least as far out as it on that side are cut away.
+double adjusted_p(const Matrix<double>& from_below, const std::vector<double>& p, std::size_t column) {
+  const auto n = static_cast<double>(from_below.rows());
+  const double own = from_below(0, column);
+  double below = 0.0, above = 0.0;
+  for (std::size_t r = 0; r < from_below.rows(); ++r) {
+    if (from_below(r, column) <= own) below = std::max(below, p[r]);
+    if (n - from_below(r, column) <= n - own) above = std::max(above, p[r]);
+  }
+  return std::min(below, above);
+}
+
+double median_without_first(const Matrix<double>& rows, std::size_t column) {
+  std::vector<double> values = rows.column(column);
+  values.erase(values.begin());
+  std::ranges::sort(values);
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, double alpha, GlobalEnvelope& envelope) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  envelope.lower.assign(rows.columns(), infinity);
+  envelope.upper.assign(rows.columns(), -infinity);
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (p[r] <= alpha) continue;
+    for (std::size_t c = 0; c < rows.columns(); ++c) {
+      envelope.lower[c] = std::min(envelope.lower[c], rows(r, c));
+      envelope.upper[c] = std::max(envelope.upper[c], rows(r, c));
+    }
+  }
+}
+
+constexpr double rounding = 1e-6;  ///< of ranks; rows this near to a bound are looked at
+
+/// Sorted values with one more put in.
+struct Inserted {
+  std::span<const double> sorted;
+  std::size_t at = 0;
+  double value = 0.0;
+  double operator[](std::size_t i) const { return i < at ? sorted[i] : i == at ? value : sorted[i - 1]; }
+};
+
 }  // namespace
+
+double quantile(std::span<const double> sample, double probability) {
+  return sorted_quantile(sorted(sample), probability);
+}
+
+double sorted_quantile(std::span<const double> sample, double probability) {
+  require(!sample.empty(), "quantile: empty sample");
+  require(probability >= 0.0 && probability <= 1.0, "quantile: probability outside [0, 1]");
+  const double place = probability * static_cast<double>(sample.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sample.size() - 1);
+  return sample[below] + (place - static_cast<double>(below)) * (sample[above] - sample[below]);
+}
+
+Interval clopper_pearson(std::size_t hits, std::size_t trials, double confidence) {
+  require(trials > 0 && hits <= trials, "clopper_pearson: hits must lie between 0 and a positive number of trials");
+  require(confidence > 0.0 && confidence < 1.0, "clopper_pearson: confidence must lie between 0 and 1");
+  const double tail = 0.5 * (1.0 - confidence);
+  const auto n = static_cast<double>(trials), k = static_cast<double>(hits);
+  return {hits == 0 ? 0.0 : boost::math::binomial_distribution<>::find_lower_bound_on_p(n, k, tail),
+          hits == trials ? 1.0 : boost::math::binomial_distribution<>::find_upper_bound_on_p(n, k, tail)};
+}
+
+double sign_test_greater(std::size_t positive, std::size_t negative) {
+  if (positive == 0) return 1.0;
+  const boost::math::binomial_distribution<> signs(static_cast<double>(positive + negative), 0.5);
+  return boost::math::cdf(boost::math::complement(signs, static_cast<double>(positive) - 1.0));
+}
+
+Interval mean_interval(std::span<const double> values, double confidence) {
+  require(values.size() > 1, "mean_interval: fewer than two values");
+  require(confidence > 0.0 && confidence < 1.0, "mean_interval: confidence must lie between 0 and 1");
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const boost::math::students_t_distribution<> student(n - 1.0);
+  const double reach = boost::math::quantile(boost::math::complement(student, 0.5 * (1.0 - confidence))) *
+                       std::sqrt(squares / (n - 1.0) / n);
+  return {mean - reach, mean + reach};
+}
+
+double energy_score(const Matrix<double>& ensemble, std::span<const double> observed) {
+  require(ensemble.rows() > 0, "energy_score: no member");
+  require(ensemble.columns() == observed.size(), "energy_score: members and observation differ in length");
+  const auto n = static_cast<double>(ensemble.rows());
+  double error = 0.0, pairs = 0.0;
+  for (std::size_t i = 0; i < ensemble.rows(); ++i) {
+    error += distance(ensemble.row(i), observed);
+    for (std::size_t j = 0; j < i; ++j) pairs += distance(ensemble.row(i), ensemble.row(j));
+  }
+  return error / n - pairs / (n * n);
+}
+
+double area_between(std::span<const double> a, std::span<const double> b) {
+  require(!a.empty() && !b.empty(), "area_between: empty sample");
+  const std::vector<double> x = sorted(a), y = sorted(b);
+  double area = 0.0, at = std::min(x.front(), y.front());
+  for (std::size_t i = 0, j = 0; i < x.size() || j < y.size();) {
+    const double next = j == y.size() || (i < x.size() && x[i] <= y[j]) ? x[i] : y[j];
+    const double height =
+        static_cast<double>(i) / static_cast<double>(x.size()) - static_cast<double>(j) / static_cast<double>(y.size());
+    area += std::abs(height) * (next - at);
+    at = next;
+    while (i < x.size() && x[i] == next) ++i;
+    while (j < y.size() && y[j] == next) ++j;
+  }
+  return area;
+}
 
 ParameterEstimator ParameterEstimator::fit(const Matrix<double>& statistics, const Matrix<double>& parameters) {
   require(statistics.rows() == parameters.rows() && statistics.rows() > 1,
@@ -244,24 +341,8 @@ std::vector<double> ParameterEstimator::estimate(std::span<const double> statist
   return values;
 }
 
-Matrix<double> ParameterEstimator::estimate(const Matrix<double>& statistics) const {
-  Matrix<double> estimates(statistics.rows(), intercept_.size());
-  for (std::size_t r = 0; r < statistics.rows(); ++r) {
-    const std::vector<double> values = estimate(statistics.row(r));
-    std::copy(values.begin(), values.end(), estimates.row(r).begin());
-  }
-  return estimates;
-}
-
-double AbcPosterior::mean(std::size_t parameter) const {
-  double sum = 0.0;
-  for (std::size_t r = 0; r < values.rows(); ++r) sum += weights[r] * values(r, parameter);
-  return sum;
-}
-
 double AbcPosterior::quantile(std::size_t parameter, double probability) const {
-  std::vector<std::size_t> order(values.rows());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = numbers_to(values.rows());
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return values(a, parameter) < values(b, parameter); });
   // Each value stands in the middle of its weight; between two of them the quantile is linear.
@@ -307,163 +388,6 @@ AbcPosterior abc_posterior(const Matrix<double>& parameters, const Matrix<double
   return {detail::to_matrix(values), std::move(accepted.weights)};
 }
 
-}  // namespace pirsim::stats
-
-// The global envelope test: how extreme each curve is anywhere, and among all curves.
-
-// Ranks of the values of one entry, from the smallest up.
-
-namespace pirsim::stats::detail {
-
-/// Calls use(begin, end) for every run of equal values.
-template <typename Use>
-void for_each_tie(const std::vector<double>& sorted, const Use& use) {
-  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
-    use(begin, end);
-  }
-}
-
-/// The rank from the largest value down is this less the rank from below. n: number of values.
-inline double top_rank(PointwiseRank kind, std::size_t n) {
-  return kind == PointwiseRank::continuous ? double(n) : double(n + 1);
-}
-
-/// Place of sorted[i] between its neighbours, in (0, n). Ref: [Hahn2015] in the form of [Myllymaki2024].
-template <typename Sorted>
-double continuous_rank(const Sorted& sorted, std::size_t n, std::size_t i) {
-  const std::size_t last = n - 1;
-  if (i == 0) return std::exp(-(sorted[1] - sorted[0]) / (sorted[last] - sorted[1]));
-  if (i == last) {
-    return static_cast<double>(n) - std::exp(-(sorted[last] - sorted[last - 1]) / (sorted[last - 1] - sorted[0]));
-  }
-  return static_cast<double>(i) + (sorted[i] - sorted[i - 1]) / (sorted[i + 1] - sorted[i - 1]);
-}
-
-/// Rank of each of the equal values sorted[begin] to sorted[end - 1]. kind: not random_ties. Of a tied pair the formula
-/// of continuous_rank gives the middle too, except at an end.
-template <typename Sorted>
-double shared_rank(PointwiseRank kind, const Sorted& sorted, std::size_t n, std::size_t begin, std::size_t end) {
-  if (kind == PointwiseRank::middle_ties) return 0.5 * static_cast<double>(begin + 1 + end);
-  return end - begin > 1 ? 0.5 * static_cast<double>(begin + end) : continuous_rank(sorted, n, begin);
-}
-
-}  // namespace pirsim::stats::detail
-
-namespace pirsim::stats {
-namespace {
-
-/// Ranks of a column from its smallest value up; the rank from the largest down is top - rank.
-struct ColumnRanks {
-  std::vector<double> from_below;  ///< (n_rows)
-  double top = 0.0;
-};
-
-ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, Stream stream) {
-  const std::size_t n = values.size();
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<std::uint32_t> lot(n, 0);
-  if (kind == PointwiseRank::random_ties) std::generate(lot.begin(), lot.end(), [&] { return stream.next_u32(); });
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (values[a] != values[b]) return values[a] < values[b];
-    return lot[a] != lot[b] ? lot[a] < lot[b] : a < b;
-  });
-  std::vector<double> sorted(n);
-  for (std::size_t i = 0; i < n; ++i) sorted[i] = values[order[i]];
-
-  ColumnRanks ranks{std::vector<double>(n), detail::top_rank(kind, n)};
-  detail::for_each_tie(sorted, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      ranks.from_below[order[i]] = kind == PointwiseRank::random_ties
-                                       ? static_cast<double>(i + 1)
-                                       : detail::shared_rank(kind, sorted, sorted.size(), begin, end);
-    }
-  });
-  return ranks;
-}
-
-/// Ranks of every entry from either side; small is extreme.
-struct SideRanks {
-  Matrix<double> low, high;
-};
-
-SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& settings) {
-  SideRanks sides{Matrix<double>(rows.rows(), rows.columns()), Matrix<double>(rows.rows(), rows.columns())};
-  std::size_t column = 0;
-  const auto rank = [&](std::size_t c) {
-    std::vector<double> values(rows.rows());
-    for (std::size_t r = 0; r < rows.rows(); ++r) values[r] = rows(r, c);
-    return rank_column(values, settings.rank,
-                       Stream({settings.seed, 0, static_cast<std::uint32_t>(c), Purpose::tied_ranks}));
-  };
-  const auto store = [&](ColumnRanks& ranks) {
-    for (std::size_t r = 0; r < rows.rows(); ++r) {
-      sides.low(r, column) = ranks.from_below[r];
-      sides.high(r, column) = ranks.top - ranks.from_below[r];
-    }
-    ++column;
-  };
-  ordered_parallel<ColumnRanks>(rows.columns(), settings.threads, rank, store);
-  return sides;
-}
-
-/// (n_rows x n_columns) per row its pointwise ranks from the nearer side, smallest first.
-Matrix<double> sorted_ranks(const SideRanks& sides) {
-  Matrix<double> sorted = sides.low;
-  for (std::size_t i = 0; i < sorted.values().size(); ++i)
-    sorted.values()[i] = std::min(sorted.values()[i], sides.high.values()[i]);
-  for (std::size_t r = 0; r < sorted.rows(); ++r) std::sort(sorted.row(r).begin(), sorted.row(r).end());
-  return sorted;
-}
-
-std::vector<double> share_at_least_as_extreme(const Matrix<double>& sorted) {
-  const std::size_t n = sorted.rows();
-  const auto less = [&](std::size_t a, std::size_t b) {
-    const auto x = sorted.row(a), y = sorted.row(b);
-    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
-  };
-  std::vector<std::size_t> order(n);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), less);
-  std::vector<double> share(n);
-  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
-    while (end < n && !less(order[begin], order[end])) ++end;
-    for (std::size_t i = begin; i < end; ++i) share[order[i]] = static_cast<double>(end) / static_cast<double>(n);
-  }
-  return share;
-}
-
-/// The envelope excludes the first row's entry once all rows at least as far out as it on that side are cut away.
-double adjusted_p(const Matrix<double>& side, const std::vector<double>& p, std::size_t column) {
-  double largest = 0.0;
-  for (std::size_t r = 0; r < side.rows(); ++r)
-    if (side(r, column) <= side(0, column)) largest = std::max(largest, p[r]);
-  return largest;
-}
-
-double median_without_first(const Matrix<double>& rows, std::size_t column) {
-  std::vector<double> values;
-  for (std::size_t r = 1; r < rows.rows(); ++r) values.push_back(rows(r, column));
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
-
-void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, double alpha, GlobalEnvelope& envelope) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  envelope.lower.assign(rows.columns(), infinity);
-  envelope.upper.assign(rows.columns(), -infinity);
-  for (std::size_t r = 0; r < rows.rows(); ++r) {
-    if (p[r] <= alpha) continue;
-    for (std::size_t c = 0; c < rows.columns(); ++c) {
-      envelope.lower[c] = std::min(envelope.lower[c], rows(r, c));
-      envelope.upper[c] = std::max(envelope.upper[c], rows(r, c));
-    }
-  }
-}
-
-}  // namespace
-
 GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                     const EnvelopeSettings& settings) {
   require(simulated.rows() > 0, "envelope: no simulated row");
@@ -476,31 +400,17 @@ GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matr
   std::copy(observed.begin(), observed.end(), rows.values().begin());
   std::copy(simulated.values().begin(), simulated.values().end(), rows.row(1).data());
 
-  const SideRanks sides = rank_sides(rows, settings);
-  const std::vector<double> p = share_at_least_as_extreme(sorted_ranks(sides));
+  const Matrix<double> from_below = rank_columns(rows, settings.threads);
+  const std::vector<double> p = share_at_least_as_extreme(sorted_ranks(from_below));
   GlobalEnvelope envelope;
   envelope.p = p[0];
   for (std::size_t c = 0; c < rows.columns(); ++c) {
-    envelope.adjusted_p.push_back(std::min(adjusted_p(sides.low, p, c), adjusted_p(sides.high, p, c)));
+    envelope.adjusted_p.push_back(adjusted_p(from_below, p, c));
     envelope.median.push_back(median_without_first(rows, c));
   }
   draw_envelope(rows, p, settings.alpha, envelope);
   return envelope;
 }
-
-namespace {
-
-constexpr double rounding = 1e-6;  ///< of ranks; rows this near to a bound are looked at
-
-/// Sorted values with one more put in.
-struct Inserted {
-  std::span<const double> sorted;
-  std::size_t at = 0;
-  double value = 0.0;
-  double operator[](std::size_t i) const { return i < at ? sorted[i] : i == at ? value : sorted[i - 1]; }
-};
-
-}  // namespace
 
 /// One entry's ranks once the observed value is among them. Values above it move up by one; only its neighbours, and
 /// the values at both ends, which a continuous rank looks at, need ranks of their own.
@@ -522,31 +432,21 @@ struct EnvelopeReference::Column {
   }
 };
 
-EnvelopeReference::EnvelopeReference(Matrix<double> simulated, PointwiseRank rank)
+EnvelopeReference::EnvelopeReference(Matrix<double> simulated)
     : simulated_(std::move(simulated)),
       sorted_(simulated_.columns(), simulated_.rows()),
       from_below_(simulated_.rows(), simulated_.columns()),
-      least_(simulated_.rows(), std::numeric_limits<double>::infinity()),
-      rank_(rank) {
-  require(rank != PointwiseRank::random_ties, "envelope: a reference can't put ties in random order");
+      least_(simulated_.rows(), std::numeric_limits<double>::infinity()) {
   require(simulated_.rows() > 1, "envelope: fewer than two simulated rows");
   require(simulated_.columns() > 0, "envelope: nothing to compare");
   require_finite(simulated_.values(), "envelope: a simulated statistic is not finite");
   const std::size_t n = simulated_.rows();
-  std::vector<double> values(n);
   for (std::size_t c = 0; c < simulated_.columns(); ++c) {
-    for (std::size_t r = 0; r < n; ++r) values[r] = simulated_(r, c);
-    std::sort(values.begin(), values.end());
-    std::copy(values.begin(), values.end(), sorted_.row(c).begin());
-    std::vector<double> ranks(n);  // of values[i]
-    detail::for_each_tie(values, [&](std::size_t begin, std::size_t end) {
-      std::fill(ranks.begin() + static_cast<std::ptrdiff_t>(begin), ranks.begin() + static_cast<std::ptrdiff_t>(end),
-                detail::shared_rank(rank_, values, n, begin, end));
-    });
+    const std::vector<double> values = simulated_.column(c), ranks = ranks_of(values);
+    std::ranges::copy(sorted(values), sorted_.row(c).begin());
     for (std::size_t r = 0; r < n; ++r) {
-      const auto i = std::lower_bound(values.begin(), values.end(), simulated_(r, c)) - values.begin();
-      const double below = from_below_(r, c) = ranks[static_cast<std::size_t>(i)];
-      least_[r] = std::min({least_[r], below, detail::top_rank(rank_, n) - below});
+      from_below_(r, c) = ranks[r];
+      least_[r] = std::min({least_[r], ranks[r], static_cast<double>(n) - ranks[r]});
     }
   }
 }
@@ -559,14 +459,13 @@ EnvelopeReference::Column EnvelopeReference::insert(std::size_t entry, double ob
   const Inserted all{sorted, lower, observed};
   Column column;
   column.observed = observed;
-  column.own_rank = detail::shared_rank(rank_, all, n, lower, upper + 1);
+  column.own_rank = shared_rank(all, n, lower, upper + 1);
   /// Of the simulated value sorted[i], which differs from the observed one.
   const auto special = [&](std::size_t i) {
     const std::size_t shift = i < lower ? 0 : 1;
     const auto tied = std::equal_range(sorted.begin(), sorted.end(), sorted[i]);
-    return Column::Special{
-        sorted[i], detail::shared_rank(rank_, all, n, static_cast<std::size_t>(tied.first - sorted.begin()) + shift,
-                                       static_cast<std::size_t>(tied.second - sorted.begin()) + shift)};
+    return Column::Special{sorted[i], shared_rank(all, n, static_cast<std::size_t>(tied.first - sorted.begin()) + shift,
+                                                  static_cast<std::size_t>(tied.second - sorted.begin()) + shift)};
   };
   if (lower > 0) {
     column.first = special(0);
@@ -582,7 +481,7 @@ EnvelopeReference::Column EnvelopeReference::insert(std::size_t entry, double ob
 double EnvelopeReference::p(std::span<const double> observed) const {
   require(observed.size() == simulated_.columns(), "envelope: observed and simulated rows differ in length");
   require_finite(observed, "envelope: an observed statistic is not finite");
-  const double top = detail::top_rank(rank_, simulated_.rows() + 1);
+  const auto top = static_cast<double>(simulated_.rows() + 1);
   std::vector<Column> columns;
   std::vector<double> own;  // the observed row's pointwise ranks, smallest first
   for (std::size_t c = 0; c < observed.size(); ++c) {

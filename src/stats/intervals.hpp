@@ -32,13 +32,9 @@ namespace pirsim::stats {
 
 // How well an ensemble predicts what was observed, and how far two samples lie apart.
 
-/// Continuous ranked probability score of an ensemble (at least one member): mean |x - y| - 1/2 mean |x - x'|, over
-/// all pairs of members, each with itself too. 0 is perfect; with one member it is the absolute error.
-/// In the unit of the values. Ref: [Gneiting2007] equation 21.
-[[nodiscard]] double crps(std::span<const double> ensemble, double observed);
-
-/// The energy score: the CRPS of vectors, by Euclidean distances. ensemble: (n_members x n_entries); scale the
-/// entries first if their units differ. Ref: [Gneiting2007] equation 22.
+/// The energy score of an ensemble (n_members x n_entries, at least one member): mean |x - y| - 1/2 mean |x - x'|, over
+/// all pairs of members, each with itself too, by Euclidean distances. 0 is perfect; with one member it is the error.
+/// Scale the entries first if their units differ. Ref: [Gneiting2007] equation 22.
 [[nodiscard]] double energy_score(const Matrix<double>& ensemble, std::span<const double> observed);
 
 /// Area between two empirical distribution functions (1-Wasserstein distance), in the unit of the values; the samples
@@ -56,7 +52,6 @@ class ParameterEstimator {
   /// statistics: (n_rows x n_statistics); parameters: (n_rows x n_parameters); two rows or more.
   [[nodiscard]] static ParameterEstimator fit(const Matrix<double>& statistics, const Matrix<double>& parameters);
   [[nodiscard]] std::vector<double> estimate(std::span<const double> statistics) const;  ///< (n_parameters)
-  [[nodiscard]] Matrix<double> estimate(const Matrix<double>& statistics) const;         ///< (n_rows x n_parameters)
 
  private:
   std::vector<double> intercept_;
@@ -72,7 +67,6 @@ struct AbcSettings {
 struct AbcPosterior {
   Matrix<double> values;        ///< (n_accepted x n_parameters) after regression adjustment
   std::vector<double> weights;  ///< (n_accepted) Epanechnikov's kernel of the distance; sum 1
-  [[nodiscard]] double mean(std::size_t parameter) const;
   [[nodiscard]] double quantile(std::size_t parameter, double probability) const;
   /// Equal tails; `widening` stretches the interval about the median (1: as it is).
   [[nodiscard]] Interval interval(std::size_t parameter, double confidence, double widening = 1.0) const;
@@ -86,28 +80,18 @@ struct AbcPosterior {
                                          std::span<const double> observed, const AbcSettings& settings = {});
 
 // Is this vector of statistics one of those the model makes, and if not, which entries stand out: the global envelope
-// test. Ref: [Myllymaki2017], [Myllymaki2024]
-
-/// How extreme one entry is among those of the other rows. A row's extremeness is its sorted vector of pointwise
-/// ranks, compared as words in a dictionary are (extreme rank length), whichever of these it is made of.
-enum class PointwiseRank {
-  random_ties,  ///< 1, 2, ...: equal values are put in random order; the test's level is exact for discrete data too
-  middle_ties,  ///< equal values share the middle rank; more power for discrete data, p a little too large with ties
-  continuous,   ///< the gap to the neighbour counts too, so one entry far outside suffices however many entries
-                ///< there are. Ref: [Hahn2015]
-};
+// test. A row's extremeness is its sorted vector of the ranks of its entries, compared as words in a dictionary are
+// (extreme rank length). Ranks are continuous: the gap to the neighbour counts too, so that one entry far outside
+// suffices however many entries there are. Ref: [Myllymaki2017], [Myllymaki2024], [Hahn2015]
 
 struct EnvelopeSettings {
-  double alpha = 0.05;  ///< level of the drawn envelope; in (0, 1)
-  PointwiseRank rank = PointwiseRank::random_ties;
-  std::uint64_t seed = 0;  ///< of the random order of ties
-  unsigned threads = 0;    ///< 0: all cores; never changes the result
+  double alpha = 0.05;   ///< level of the drawn envelope; in (0, 1)
+  unsigned threads = 0;  ///< 0: all cores; never changes the result
 };
 
 struct GlobalEnvelope {
   double p = 1.0;                    ///< of the whole vector: P(p <= a) <= a if the model is right
-  std::vector<double> adjusted_p;    ///< (n_entries) smallest alpha whose envelope excludes the entry; its minimum is p
-                                     ///< with random ties
+  std::vector<double> adjusted_p;    ///< (n_entries) smallest alpha whose envelope excludes the entry
   std::vector<double> lower, upper;  ///< (n_entries) envelope of the rows that are not among the alpha most extreme
   std::vector<double> median;        ///< (n_entries) of the simulated rows
 };
@@ -118,12 +102,12 @@ struct GlobalEnvelope {
 [[nodiscard]] GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                                   const EnvelopeSettings& settings = {});
 
-/// The p of global_envelope_test() for many observed rows and one set of simulated ones, without random ties. What
-/// doesn't depend on the observed row is done once; a row then costs one pass over the table.
+/// The p of global_envelope_test() for many observed rows and one set of simulated ones. What doesn't depend on the
+/// observed row is done once; a row then costs one pass over the table.
 class EnvelopeReference {
  public:
   /// simulated: (n_simulated x n_entries), finite, two rows or more. Throws Error(usage) otherwise.
-  explicit EnvelopeReference(Matrix<double> simulated, PointwiseRank rank = PointwiseRank::continuous);
+  explicit EnvelopeReference(Matrix<double> simulated);
   [[nodiscard]] double p(std::span<const double> observed) const;  ///< of (n_entries) finite numbers
 
  private:
@@ -134,7 +118,6 @@ class EnvelopeReference {
   Matrix<double> sorted_;      ///< (n_entries x n_simulated) values of each entry
   Matrix<double> from_below_;  ///< (n_simulated x n_entries) ranks among the simulated rows
   std::vector<double> least_;  ///< (n_simulated) the least of their ranks, from below or above
-  PointwiseRank rank_;
 };
 
 }  // namespace pirsim::stats

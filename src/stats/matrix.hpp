@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,6 +41,11 @@ class Matrix {
     values_.insert(values_.end(), row.begin(), row.begin() + static_cast<std::ptrdiff_t>(columns_));
     ++rows_;
   }
+  [[nodiscard]] std::vector<T> column(std::size_t index) const {
+    std::vector<T> values;
+    for (std::size_t r = 0; r < rows_; ++r) values.push_back((*this)(r, index));
+    return values;
+  }
   /// The rows of the given indices, in their order.
   [[nodiscard]] Matrix select_rows(std::span<const std::size_t> indices) const {
     Matrix selected(indices.size(), columns_);
@@ -65,7 +71,12 @@ class Matrix {
 
 // What several methods share.
 
-// One way to refuse an argument.
+/// (n) 0 to n - 1.
+[[nodiscard]] inline std::vector<std::size_t> numbers_to(std::size_t n) {
+  std::vector<std::size_t> numbers(n);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  return numbers;
+}
 
 /// Throws Error(usage) unless the condition holds.
 inline void require(bool condition, const char* message) {

@@ -11,10 +11,30 @@
 #include "stats/linear_algebra.hpp"
 #include "stats/matrix.hpp"
 
-namespace pirsim::stats::detail {
+namespace pirsim::stats {
 namespace {
 
-struct Split {
+/// What all trees are grown from; the features must outlive it.
+struct GrowingData {
+  std::size_t n_rows = 0, n_columns = 0;
+  std::span<const float> features;    ///< (n_rows x n_columns)
+  std::vector<float> columns;         ///< (n_columns x n_rows) the same, transposed
+  std::vector<std::uint16_t> labels;  ///< (n_rows)
+  std::vector<double> class_weight;   ///< (n_classes) of one row, so that all classes weigh the same
+};
+
+struct GrowingRules {
+  std::size_t tries = 1;
+  std::size_t min_leaf = 1;
+  std::uint64_t seed = 0;
+};
+
+struct GrownTree {
+  ExtraTrees::Tree tree;
+  std::vector<double> gain;  ///< (n_columns) decrease of weighted impurity
+};
+
+struct NodeSplit {
   std::size_t column = 0;
   float threshold = 0.0F;
   double score = -1.0;  ///< sum over both sides of sum of squared class weights / weight
@@ -55,7 +75,7 @@ class Grower {
       const Task task = waiting.back();
       waiting.pop_back();
       count(task);
-      const Split split = find_split(task);
+      const NodeSplit split = find_split(task);
       if (split.score < 0.0) {
         make_leaf(task.node);
         continue;
@@ -112,8 +132,8 @@ class Grower {
   }
 
   /// Of up to `tries` columns that vary in the node, drawn without replacement, the best random threshold.
-  Split find_split(const Task& task) {
-    Split best;
+  NodeSplit find_split(const Task& task) {
+    NodeSplit best;
     const std::size_t n = task.end - task.begin;
     if (n < 2 * rules_.min_leaf || node_classes_.size() < 2) return best;
     std::size_t tried = 0;
@@ -165,7 +185,7 @@ class Grower {
     return left + purity(left_counts_);
   }
 
-  std::size_t partition(const Task& task, const Split& split) {
+  std::size_t partition(const Task& task, const NodeSplit& split) {
     const ColumnValues values = values_of(split.column, task);
     const auto begin = rows_.begin() + static_cast<std::ptrdiff_t>(task.begin);
     const auto end = rows_.begin() + static_cast<std::ptrdiff_t>(task.end);
@@ -199,8 +219,6 @@ class Grower {
   GrownTree grown_;
 };
 
-}  // namespace
-
 GrowingData prepare(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
   GrowingData data{features.rows(), features.columns(), features.values(), {}, {}, {}};
   data.columns.resize(features.values().size());
@@ -216,15 +234,6 @@ GrowingData prepare(const Matrix<float>& features, std::span<const int> labels, 
   return data;
 }
 
-GrownTree grow(const GrowingData& data, const GrowingRules& rules, std::uint32_t index) {
-  return Grower(data, rules, index).grow();
-}
-
-}  // namespace pirsim::stats::detail
-
-namespace pirsim::stats {
-namespace {
-
 /// Class shares of the leaf that the row falls into are added.
 void add_leaf(const ExtraTrees::Tree& tree, std::span<const float> features, std::span<double> sum) {
   std::uint32_t node = 0;
@@ -234,49 +243,6 @@ void add_leaf(const ExtraTrees::Tree& tree, std::span<const float> features, std
   const auto end = begin + static_cast<std::uint32_t>(-tree.column[node]);
   for (std::uint32_t i = begin; i < end; ++i) sum[tree.classes[i]] += static_cast<double>(tree.shares[i]);
 }
-
-}  // namespace
-
-ExtraTrees ExtraTrees::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                           const ExtraTreesSettings& settings) {
-  detail::check_labelled(features, labels, n_classes, 1);
-  require(settings.trees > 0 && settings.min_leaf > 0, "extra trees: at least one tree and one row a leaf");
-  const detail::GrowingData data = detail::prepare(features, labels, n_classes);
-  const auto root = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(features.columns()))));
-  const detail::GrowingRules rules{std::min(settings.tries == 0 ? root : settings.tries, features.columns()),
-                                   settings.min_leaf, settings.seed};
-  ExtraTrees forest;
-  forest.n_classes_ = n_classes;
-  forest.n_columns_ = features.columns();
-  forest.importance_.assign(features.columns(), 0.0);
-  ordered_parallel<detail::GrownTree>(
-      settings.trees, settings.threads,
-      [&](std::size_t tree) { return detail::grow(data, rules, static_cast<std::uint32_t>(tree)); },
-      [&](detail::GrownTree& grown) {
-        forest.trees_.push_back(std::move(grown.tree));
-        for (std::size_t c = 0; c < grown.gain.size(); ++c) forest.importance_[c] += grown.gain[c];
-      });
-  double total = 0.0;
-  for (const double gain : forest.importance_) total += gain;
-  if (total > 0.0)
-    for (double& gain : forest.importance_) gain /= total;
-  return forest;
-}
-
-std::vector<double> ExtraTrees::probabilities(std::span<const float> features) const {
-  require(features.size() == n_columns_, "extra trees: another number of features than was fitted");
-  std::vector<double> sum(static_cast<std::size_t>(n_classes_), 0.0);
-  for (const Tree& tree : trees_) add_leaf(tree, features, sum);
-  for (double& share : sum) share /= static_cast<double>(trees_.size());
-  return sum;
-}
-
-Matrix<double> ExtraTrees::probabilities(const Matrix<float>& features, unsigned threads) const {
-  return detail::map_rows(features.rows(), static_cast<std::size_t>(n_classes_), threads,
-                          [&](std::size_t row) { return probabilities(features.row(row)); });
-}
-
-namespace {
 
 /// A forest gives 0 to classes that no leaf holds; what is less likely than this is taken for as likely.
 constexpr double smallest_probability = 1e-4;  // assumed; 1e-3 and 1e-6 tried
@@ -314,66 +280,6 @@ LossTerms loss_of(std::span<const Matrix<double>> sources, std::span<const int> 
   return {terms.loss / n, terms.gradient / n, terms.hessian / n};
 }
 
-}  // namespace
-
-LogPool LogPool::fit(std::span<const Matrix<double>> sources, std::span<const int> labels) {
-  require(!sources.empty() && !labels.empty(), "pool: no source or no row");
-  for (const Matrix<double>& source : sources)
-    require(source.rows() == labels.size() && source.columns() == sources[0].columns(), "pool: sizes differ");
-  const auto n_sources = static_cast<Eigen::Index>(sources.size());
-  Eigen::VectorXd weights = Eigen::VectorXd::Constant(n_sources, 1.0 / static_cast<double>(n_sources));
-  LossTerms terms = loss_of(sources, labels, weights);
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    terms.hessian.diagonal().array() += 1e-9;
-    Eigen::VectorXd step = detail::solve_symmetric(terms.hessian, terms.gradient);
-    LossTerms next = loss_of(sources, labels, weights - step);
-    for (int halving = 0; next.loss > terms.loss && halving < 30; ++halving) {
-      step *= 0.5;
-      next = loss_of(sources, labels, weights - step);
-    }
-    if (!(next.loss < terms.loss)) break;
-    weights -= step;
-    terms = next;
-    if (step.norm() < 1e-8) break;
-  }
-  return LogPool({weights.begin(), weights.end()});
-}
-
-std::vector<double> LogPool::combine(std::span<const std::vector<double>> sources) const {
-  require(sources.size() == weights_.size() && !sources.empty(), "pool: another number of sources than was fitted");
-  Eigen::VectorXd logs = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sources[0].size()));
-  for (std::size_t s = 0; s < sources.size(); ++s)
-    for (std::size_t k = 0; k < sources[s].size(); ++k)
-      logs(static_cast<Eigen::Index>(k)) += weights_[s] * log_of(sources[s][k]);
-  const Eigen::VectorXd shares = softmax(logs);
-  return {shares.begin(), shares.end()};
-}
-
-Reliability reliability(const Matrix<double>& probabilities, std::span<const int> labels, std::size_t n_bins) {
-  require(probabilities.rows() == labels.size() && !labels.empty(), "reliability: rows and labels differ in number");
-  require(n_bins > 0, "reliability: no bin");
-  Reliability result{std::vector<ReliabilityBin>(n_bins), 0.0};
-  for (std::size_t row = 0; row < labels.size(); ++row) {
-    const auto shares = probabilities.row(row);
-    const auto likeliest = std::max_element(shares.begin(), shares.end());
-    const auto place = static_cast<std::size_t>(std::clamp(*likeliest, 0.0, 1.0) * static_cast<double>(n_bins));
-    ReliabilityBin& bin = result.bins[std::min(place, n_bins - 1)];
-    ++bin.rows;
-    bin.mean_probability += *likeliest;
-    bin.share_right += likeliest - shares.begin() == labels[row] ? 1.0 : 0.0;
-  }
-  for (ReliabilityBin& bin : result.bins) {
-    result.expected_calibration_error +=
-        std::abs(bin.mean_probability - bin.share_right) / static_cast<double>(labels.size());
-    if (bin.rows == 0) continue;
-    bin.mean_probability /= static_cast<double>(bin.rows);
-    bin.share_right /= static_cast<double>(bin.rows);
-  }
-  return result;
-}
-
-namespace {
-
 std::vector<float> with_coordinates(std::span<const float> features, std::span<const double> place) {
   std::vector<float> wide(features.begin(), features.end());
   for (const double coordinate : place) wide.push_back(static_cast<float>(coordinate));
@@ -388,68 +294,6 @@ Matrix<float> with_coordinates(const Matrix<float>& features, const Matrix<doubl
   }
   return wide;
 }
-
-}  // namespace
-
-PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                       const Split& split, const PooledClassifierSettings& settings,
-                                       std::span<const int> subclasses) {
-  require(labels.size() == features.rows(), "classes: rows and labels differ in number");
-  const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
-  PooledClassifier fitted;
-  {
-    const Matrix<float> fitting = features.select_rows(split.fitting);
-    const std::vector<int> parts = subclasses.empty() ? fitting_labels : detail::select(subclasses, split.fitting);
-    fitted.mixture_ = MixtureDiscriminant::fit(fitting, fitting_labels, n_classes, parts);
-    fitted.n_coordinates_ = std::min(settings.coordinates, fitted.mixture_.discriminant().n_directions());
-    const Matrix<double> places =
-        fitted.mixture_.discriminant().project(fitting, fitted.n_coordinates_, settings.threads);
-    fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
-    fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
-  }
-  std::vector<Matrix<double>> tables;  // per source (n_calibration_rows x n_classes)
-  using Sources = std::vector<std::vector<double>>;
-  ordered_parallel<Sources>(
-      split.calibration.size(), settings.threads,
-      [&](std::size_t i) { return fitted.sources(features.row(split.calibration[i])); },
-      [&](Sources& row) {
-        tables.resize(row.size());
-        for (std::size_t s = 0; s < row.size(); ++s) tables[s].append_row(std::span<const double>(row[s]));
-      });
-  fitted.pool_ = LogPool::fit(tables, detail::select(labels, split.calibration));
-  for (std::size_t i = 0; i < split.calibration.size(); ++i) {
-    Sources row;
-    for (const Matrix<double>& table : tables) row.emplace_back(table.row(i).begin(), table.row(i).end());
-    fitted.probabilities_.append_row(std::span<const double>(fitted.pool_.combine(row)));
-  }
-  return fitted;
-}
-
-std::vector<std::vector<double>> PooledClassifier::sources(std::span<const float> features) const {
-  const std::vector<double> whole = mixture_.discriminant().project(features);
-  const auto place = std::span(whole).first(n_coordinates_);
-  return {trees_.probabilities(with_coordinates(features, place)), mixture_.probabilities_at(whole),
-          detail::softmax(layers_.log_densities(place))};
-}
-
-std::vector<double> PooledClassifier::probabilities(std::span<const float> features) const {
-  return pool_.combine(sources(features));
-}
-
-std::vector<double> PooledClassifier::log_densities(std::span<const float> features) const {
-  const std::vector<double> place = mixture_.discriminant().project(features);
-  return layers_.log_densities(std::span(place).first(n_coordinates_));
-}
-
-Matrix<double> PooledClassifier::log_densities(const Matrix<float>& features, unsigned threads) const {
-  Matrix<double> all;
-  ordered_parallel<std::vector<double>>(
-      features.rows(), threads, [&](std::size_t row) { return log_densities(features.row(row)); },
-      [&](std::vector<double>& one) { all.append_row(std::span<const double>(one)); });
-  return all;
-}
-
-namespace {
 
 struct Problem {
   Eigen::MatrixXd design;  ///< (n_rows x 1 + n_columns) a column of ones first
@@ -512,6 +356,151 @@ Eigen::MatrixXd covariance(const Problem& problem, const Terms& terms, std::span
 
 }  // namespace
 
+ExtraTrees ExtraTrees::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
+                           const ExtraTreesSettings& settings) {
+  detail::check_labelled(features, labels, n_classes, 1);
+  require(settings.trees > 0 && settings.min_leaf > 0, "extra trees: at least one tree and one row a leaf");
+  const GrowingData data = prepare(features, labels, n_classes);
+  const auto root = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(features.columns()))));
+  const GrowingRules rules{std::min(settings.tries == 0 ? root : settings.tries, features.columns()), settings.min_leaf,
+                           settings.seed};
+  ExtraTrees forest;
+  forest.n_classes_ = n_classes;
+  forest.n_columns_ = features.columns();
+  forest.importance_.assign(features.columns(), 0.0);
+  ordered_parallel<GrownTree>(
+      settings.trees, settings.threads,
+      [&](std::size_t tree) { return Grower(data, rules, static_cast<std::uint32_t>(tree)).grow(); },
+      [&](GrownTree& grown) {
+        forest.trees_.push_back(std::move(grown.tree));
+        for (std::size_t c = 0; c < grown.gain.size(); ++c) forest.importance_[c] += grown.gain[c];
+      });
+  double total = 0.0;
+  for (const double gain : forest.importance_) total += gain;
+  if (total > 0.0)
+    for (double& gain : forest.importance_) gain /= total;
+  return forest;
+}
+
+std::vector<double> ExtraTrees::probabilities(std::span<const float> features) const {
+  require(features.size() == n_columns_, "extra trees: another number of features than was fitted");
+  std::vector<double> sum(static_cast<std::size_t>(n_classes_), 0.0);
+  for (const Tree& tree : trees_) add_leaf(tree, features, sum);
+  for (double& share : sum) share /= static_cast<double>(trees_.size());
+  return sum;
+}
+
+LogPool LogPool::fit(std::span<const Matrix<double>> sources, std::span<const int> labels) {
+  require(!sources.empty() && !labels.empty(), "pool: no source or no row");
+  for (const Matrix<double>& source : sources)
+    require(source.rows() == labels.size() && source.columns() == sources[0].columns(), "pool: sizes differ");
+  const auto n_sources = static_cast<Eigen::Index>(sources.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(n_sources, 1.0 / static_cast<double>(n_sources));
+  LossTerms terms = loss_of(sources, labels, weights);
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    terms.hessian.diagonal().array() += 1e-9;
+    Eigen::VectorXd step = detail::solve_symmetric(terms.hessian, terms.gradient);
+    LossTerms next = loss_of(sources, labels, weights - step);
+    for (int halving = 0; next.loss > terms.loss && halving < 30; ++halving) {
+      step *= 0.5;
+      next = loss_of(sources, labels, weights - step);
+    }
+    if (!(next.loss < terms.loss)) break;
+    weights -= step;
+    terms = next;
+    if (step.norm() < 1e-8) break;
+  }
+  return LogPool({weights.begin(), weights.end()});
+}
+
+std::vector<double> LogPool::combine(std::span<const std::vector<double>> sources) const {
+  require(sources.size() == weights_.size() && !sources.empty(), "pool: another number of sources than was fitted");
+  Eigen::VectorXd logs = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sources[0].size()));
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    for (std::size_t k = 0; k < sources[s].size(); ++k)
+      logs(static_cast<Eigen::Index>(k)) += weights_[s] * log_of(sources[s][k]);
+  const Eigen::VectorXd shares = softmax(logs);
+  return {shares.begin(), shares.end()};
+}
+
+Reliability reliability(const Matrix<double>& probabilities, std::span<const int> labels, std::size_t n_bins) {
+  require(probabilities.rows() == labels.size() && !labels.empty(), "reliability: rows and labels differ in number");
+  require(n_bins > 0, "reliability: no bin");
+  Reliability result{std::vector<ReliabilityBin>(n_bins), 0.0};
+  for (std::size_t row = 0; row < labels.size(); ++row) {
+    const auto shares = probabilities.row(row);
+    const auto likeliest = std::max_element(shares.begin(), shares.end());
+    const auto place = static_cast<std::size_t>(std::clamp(*likeliest, 0.0, 1.0) * static_cast<double>(n_bins));
+    ReliabilityBin& bin = result.bins[std::min(place, n_bins - 1)];
+    ++bin.rows;
+    bin.mean_probability += *likeliest;
+    bin.share_right += likeliest - shares.begin() == labels[row] ? 1.0 : 0.0;
+  }
+  for (ReliabilityBin& bin : result.bins) {
+    result.expected_calibration_error +=
+        std::abs(bin.mean_probability - bin.share_right) / static_cast<double>(labels.size());
+    if (bin.rows == 0) continue;
+    bin.mean_probability /= static_cast<double>(bin.rows);
+    bin.share_right /= static_cast<double>(bin.rows);
+  }
+  return result;
+}
+
+PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
+                                       const Split& split, const PooledClassifierSettings& settings,
+                                       std::span<const int> subclasses) {
+  require(labels.size() == features.rows(), "classes: rows and labels differ in number");
+  const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
+  PooledClassifier fitted;
+  {
+    const Matrix<float> fitting = features.select_rows(split.fitting);
+    const std::vector<int> parts = subclasses.empty() ? fitting_labels : detail::select(subclasses, split.fitting);
+    fitted.mixture_ = MixtureDiscriminant::fit(fitting, fitting_labels, n_classes, parts);
+    fitted.n_coordinates_ = std::min(settings.coordinates, fitted.mixture_.discriminant().n_directions());
+    const Matrix<double> places =
+        fitted.mixture_.discriminant().project(fitting, fitted.n_coordinates_, settings.threads);
+    fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
+    fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
+  }
+  std::vector<Matrix<double>> tables;  // per source (n_calibration_rows x n_classes)
+  using Sources = std::vector<std::vector<double>>;
+  ordered_parallel<Sources>(
+      split.calibration.size(), settings.threads,
+      [&](std::size_t i) { return fitted.sources(features.row(split.calibration[i])); },
+      [&](Sources& row) {
+        tables.resize(row.size());
+        for (std::size_t s = 0; s < row.size(); ++s) tables[s].append_row(row[s]);
+      });
+  fitted.pool_ = LogPool::fit(tables, detail::select(labels, split.calibration));
+  for (std::size_t i = 0; i < split.calibration.size(); ++i) {
+    Sources row;
+    for (const Matrix<double>& table : tables) row.emplace_back(table.row(i).begin(), table.row(i).end());
+    fitted.probabilities_.append_row(fitted.pool_.combine(row));
+  }
+  return fitted;
+}
+
+std::vector<std::vector<double>> PooledClassifier::sources(std::span<const float> features) const {
+  const std::vector<double> whole = mixture_.discriminant().project(features);
+  const auto place = std::span(whole).first(n_coordinates_);
+  return {trees_.probabilities(with_coordinates(features, place)), mixture_.probabilities_at(whole),
+          detail::softmax(layers_.log_densities(place))};
+}
+
+std::vector<double> PooledClassifier::probabilities(std::span<const float> features) const {
+  return pool_.combine(sources(features));
+}
+
+std::vector<double> PooledClassifier::log_densities(std::span<const float> features) const {
+  const std::vector<double> place = mixture_.discriminant().project(features);
+  return layers_.log_densities(std::span(place).first(n_coordinates_));
+}
+
+Matrix<double> PooledClassifier::log_densities(const Matrix<float>& features, unsigned threads) const {
+  return detail::map_rows(features.rows(), static_cast<std::size_t>(n_classes()), threads,
+                          [&](std::size_t row) { return log_densities(features.row(row)); });
+}
+
 LogisticFit fit_logistic(const Matrix<double>& columns, std::span<const std::uint8_t> outcomes,
                          const LogisticSettings& settings) {
   require(columns.rows() == outcomes.size() && !outcomes.empty(), "logistic: rows and outcomes differ in number");
@@ -541,7 +530,7 @@ LogisticFit fit_logistic(const Matrix<double>& columns, std::span<const std::uin
   }
   require(iteration < most_iterations && at.allFinite(), "logistic: no maximum (separable outcomes); give a ridge");
   const Eigen::VectorXd errors = covariance(problem, terms, settings.cluster).diagonal().cwiseSqrt();
-  return {{at.begin(), at.end()}, {errors.begin(), errors.end()}, terms.log_likelihood, iteration + 1};
+  return {{at.begin(), at.end()}, {errors.begin(), errors.end()}, terms.log_likelihood};
 }
 
 }  // namespace pirsim::stats

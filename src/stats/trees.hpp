@@ -32,8 +32,6 @@ class ExtraTrees {
 
   /// (n_classes) mean over trees of the leaf's class shares; sums to 1.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
-  /// (n_rows x n_classes)
-  [[nodiscard]] Matrix<double> probabilities(const Matrix<float>& features, unsigned threads = 0) const;
   /// (n_columns) share of the total gain that each column's splits made; sums to 1 unless no tree has a split.
   [[nodiscard]] const std::vector<double>& importance() const noexcept { return importance_; }
   [[nodiscard]] int n_classes() const noexcept { return n_classes_; }
@@ -57,41 +55,8 @@ class ExtraTrees {
   std::vector<double> importance_;
 };
 
-}  // namespace pirsim::stats
-
-namespace pirsim::stats::detail {
-
-// Grows one randomised tree.
-
-/// What all trees are grown from; the features must outlive it.
-struct GrowingData {
-  std::size_t n_rows = 0, n_columns = 0;
-  std::span<const float> features;    ///< (n_rows x n_columns)
-  std::vector<float> columns;         ///< (n_columns x n_rows) the same, transposed
-  std::vector<std::uint16_t> labels;  ///< (n_rows)
-  std::vector<double> class_weight;   ///< (n_classes) of one row, so that all classes weigh the same
-};
-
-struct GrowingRules {
-  std::size_t tries = 1;
-  std::size_t min_leaf = 1;
-  std::uint64_t seed = 0;
-};
-
-struct GrownTree {
-  ExtraTrees::Tree tree;
-  std::vector<double> gain;  ///< (n_columns) decrease of weighted impurity
-};
-
-[[nodiscard]] GrowingData prepare(const Matrix<float>& features, std::span<const int> labels, int n_classes);
-[[nodiscard]] GrownTree grow(const GrowingData& data, const GrowingRules& rules, std::uint32_t index);
-
-}  // namespace pirsim::stats::detail
-
 // Which class made a row: what three kinds of classifier say, as one calibrated probability; whether probabilities mean
 // what they say.
-
-namespace pirsim::stats {
 
 /// Several classifiers' probabilities as one: p_k proportional to the product over sources of p_(source,k)^weight.
 /// With one source this is temperature scaling, weight = 1 / temperature. Ref: [Guo2017]
@@ -191,7 +156,6 @@ struct LogisticFit {
   std::vector<double> coefficients;     ///< (1 + n_columns) intercept, then slopes, in log-odds per unit of the column
   std::vector<double> standard_errors;  ///< (1 + n_columns)
   double log_likelihood = 0.0;          ///< without the ridge's part
-  int iterations = 0;
 };
 
 /// outcomes: (n_rows) of 0 and 1; columns: (n_rows x n_columns). Maximum (penalised) likelihood by Newton's method.

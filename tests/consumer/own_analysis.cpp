@@ -4,7 +4,6 @@
 #include <pirsim/reconcile.hpp>
 
 #include <iostream>
-#include <variant>
 
 namespace rec = pirsim::reconcile;
 
@@ -20,13 +19,11 @@ int main(int argc, char** argv) {
     settings.max_effects = 1;
     int stages = 0;
     rec::Context context;
-    context.observer.stage = [&](const rec::Stage&) { ++stages; };
+    context.observer.stage = [&](const std::string&) { ++stages; };
     const rec::Outcome outcome = rec::reconcile(scene, script, measured, settings, context);
     std::cout << rec::sentence(outcome) << '\n';
-    // A reason is a type with its numbers.
     for (const rec::Candidate& candidate : outcome.candidates) {
-      if (const auto* out = std::get_if<rec::reason::RuledOut>(&candidate.reason))
-        std::cerr << candidate.score.hypothesis << ' ' << out->p_relative.value_or(1.0) << '\n';
+      if (!candidate.kept) std::cerr << candidate.score.hypothesis << ' ' << candidate.score.p_relative << '\n';
     }
     rec::write_report(argv[4], outcome, measured, script, settings, context,
                       {"own_analysis", argv[1], argv[2], argv[3]});

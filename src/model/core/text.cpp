@@ -192,6 +192,12 @@ std::string fixed(double value, int digits) {
 
 std::string percent(double share, int digits) { return fixed(100.0 * share, digits) + " %"; }
 
+std::string short_number(double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << value;
+  return out.str();
+}
+
 std::string shortest_number(double value) {
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};

@@ -52,6 +52,8 @@ inline constexpr std::string_view begin_of_list = "; there are ";
 [[nodiscard]] std::string fixed(double value, int digits);
 /// Of a share, with so many digits after the point: "12 %".
 [[nodiscard]] std::string percent(double share, int digits = 0);
+/// With three significant digits.
+[[nodiscard]] std::string short_number(double value);
 /// With as many digits as tell it from every other number.
 [[nodiscard]] std::string shortest_number(double value);
 

@@ -38,52 +38,6 @@ void for_each_awaited(const Series& run, std::size_t n_sensors, const Visit& vis
   }
 }
 
-}  // namespace
-
-double JointSilence::log_ratio() const { return std::log((rows + 0.5) / (by_chance + 0.5)); }
-
-std::vector<Gaps> gaps_of(const Series& run, std::size_t n_sensors) {
-  std::vector<Gaps> gaps(n_sensors);
-  for_each_awaited(run, n_sensors, [&](std::size_t, std::size_t s, bool is_silent) {
-    gaps[s].awaited += 1.0;
-    gaps[s].silent += is_silent ? 1.0 : 0.0;
-  });
-  return gaps;
-}
-
-JointSilence joint_silence(std::span<const Series> runs, std::size_t n_sensors) {
-  std::vector<Gaps> all(n_sensors);
-  for (const Series& run : runs) {
-    const std::vector<Gaps> own = gaps_of(run, n_sensors);
-    for (std::size_t s = 0; s < n_sensors; ++s) {
-      all[s].awaited += own[s].awaited;
-      all[s].silent += own[s].silent;
-    }
-  }
-  struct Row {
-    std::size_t n_awaited = 0;
-    bool all_silent = true;
-    double chance = 1.0;
-  };
-  JointSilence joint;
-  for (const Series& run : runs) {
-    std::vector<Row> rows(run.main_end);
-    for_each_awaited(run, n_sensors, [&](std::size_t row, std::size_t s, bool is_silent) {
-      ++rows[row].n_awaited;
-      rows[row].all_silent = rows[row].all_silent && is_silent;
-      rows[row].chance *= all[s].silent / all[s].awaited;
-    });
-    for (const Row& row : rows) {
-      if (row.n_awaited < 2) continue;
-      joint.rows += row.all_silent ? 1.0 : 0.0;
-      joint.by_chance += row.chance;
-    }
-  }
-  return joint;
-}
-
-namespace {
-
 constexpr std::size_t a_row = 1;    ///< by which walks of people with another gait may be shorter (assumed)
 constexpr double longer_by = 1.05;  ///< times as long may main parts be, or as short: who sits down earlier (assumed)
 
@@ -194,6 +148,54 @@ void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured,
 
 }  // namespace
 
+double JointSilence::log_ratio() const { return std::log((rows + 0.5) / (by_chance + 0.5)); }
+
+std::vector<Gaps> gaps_of(const Series& run, std::size_t n_sensors) {
+  std::vector<Gaps> gaps(n_sensors);
+  for_each_awaited(run, n_sensors, [&](std::size_t, std::size_t s, bool is_silent) {
+    gaps[s].awaited += 1.0;
+    gaps[s].silent += is_silent ? 1.0 : 0.0;
+  });
+  return gaps;
+}
+
+JointSilence joint_silence(std::span<const Series> runs, std::size_t n_sensors) {
+  std::vector<Gaps> all(n_sensors);
+  for (const Series& run : runs) {
+    const std::vector<Gaps> own = gaps_of(run, n_sensors);
+    for (std::size_t s = 0; s < n_sensors; ++s) {
+      all[s].awaited += own[s].awaited;
+      all[s].silent += own[s].silent;
+    }
+  }
+  struct Row {
+    std::size_t n_awaited = 0;
+    bool all_silent = true;
+    double chance = 1.0;
+  };
+  JointSilence joint;
+  for (const Series& run : runs) {
+    std::vector<Row> rows(run.main_end);
+    for_each_awaited(run, n_sensors, [&](std::size_t row, std::size_t s, bool is_silent) {
+      ++rows[row].n_awaited;
+      rows[row].all_silent = rows[row].all_silent && is_silent;
+      rows[row].chance *= all[s].silent / all[s].awaited;
+    });
+    for (const Row& row : rows) {
+      if (row.n_awaited < 2) continue;
+      joint.rows += row.all_silent ? 1.0 : 0.0;
+      joint.by_chance += row.chance;
+    }
+  }
+  return joint;
+}
+
+const Series* run_of(std::span<const Series> runs, const DataShape::Run& shape) {
+  const auto run = std::ranges::find_if(
+      runs, [&](const Series& s) { return s.trial == shape.trial && s.replicate == shape.replicate; });
+  return run == runs.end() ? nullptr : &*run;
+}
+
 bool knows_main_part(const DataShape::Run& shape, std::size_t sensor, std::size_t n_sensors) {
   bool any = shape.unknown.empty();
   for (std::size_t i = sensor; i < shape.unknown.size() && !any; i += n_sensors) any = shape.unknown[i] == 0;
@@ -234,8 +236,8 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   return shape;
 }
 
-std::vector<DataNote> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
-                               std::span<const Series> pilot) {
+std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
+                                  std::span<const Series> pilot) {
   const std::size_t n = frame.sensors.size();
   std::size_t leads = 0, tails = 0, begun = 0, shorter = 0, longer = 0;
   for (std::size_t i = 0; i < measured.runs.size(); ++i) {
@@ -255,13 +257,23 @@ std::vector<DataNote> notes_on(const StudyFrame& frame, const DataShape& shape, 
     shorter += longer_by * static_cast<double>(n_main) < static_cast<double>(usual.shortest_main) ? 1 : 0;
     longer += of_run.n_main < n_main ? 1 : 0;
   }
-  std::vector<DataNote> notes;
-  using What = DataNote::What;
-  for (const auto& [what, n_runs] : {std::pair{What::lead_left_out, leads}, std::pair{What::tail_left_out, tails},
-                                     std::pair{What::runs_begin_late, begun}, std::pair{What::runs_end_early, shorter},
-                                     std::pair{What::runs_go_on, longer}}) {
-    if (n_runs > 0) notes.push_back({what, n_runs});
-  }
+  std::vector<std::string> notes;
+  const auto tell = [&](std::size_t n_runs, const std::string& text) {
+    if (n_runs > 0) notes.push_back(text);
+  };
+  const auto left_out = [&](std::size_t n_runs, const std::string& which, const std::string& because) {
+    tell(n_runs, "What comes " + which + " the counted phases is left out of the comparison in " +
+                     counted(n_runs, "run") + ", of all sensors or some: " + because +
+                     ", or some readings are unknown.");
+  };
+  left_out(leads, "before", "the recording begins later than any simulated one");
+  left_out(tails, "after", "the recording ends earlier than any simulated one");
+  tell(begun, counted(begun, "run") + " of the file " + (begun == 1 ? "begins" : "begin") +
+                  " in a counted phase: the first row is taken for its beginning.");
+  tell(shorter, "The main part of " + counted(shorter, "run") +
+                    " of the file ends before any simulated one, by a twentieth or more: compared as far as it goes.");
+  tell(longer, "What goes on after the end of the longest simulated run is left out of the comparison in " +
+                   counted(longer, "run") + ".");
   return notes;
 }
 

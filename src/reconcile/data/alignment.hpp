@@ -58,12 +58,14 @@ struct DataShape {
 /// parts, or rows that are, if the file doesn't tell phases.
 [[nodiscard]] DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot);
 /// Which rows of the file are left out in this shape of it, and what others are taken for.
-[[nodiscard]] std::vector<DataNote> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
-                                             std::span<const Series> pilot);
+[[nodiscard]] std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape,
+                                                const Measured& measured, std::span<const Series> pilot);
 /// Everything is known: n_replicates runs of every trial, with the main parts of these pilot runs.
 [[nodiscard]] DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replicates,
                                    std::span<const Series> pilot);
 
+/// The run that the shape is of; null if there is none.
+[[nodiscard]] const Series* run_of(std::span<const Series> runs, const DataShape::Run& shape);
 /// Whether anything of a sensor's main part is known.
 [[nodiscard]] bool knows_main_part(const DataShape::Run& shape, std::size_t sensor, std::size_t n_sensors);
 

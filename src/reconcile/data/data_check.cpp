@@ -14,9 +14,10 @@
 
 #include "reconcile/data/measured.hpp"
 
-// The parts of the look at the file. Private to reconcile.
-
 namespace pirsim::reconcile {
+namespace {
+
+using What = DataFinding::What;
 
 /// Runs of one dataset, measured or simulated: they outlive it.
 struct DatasetRows {
@@ -29,23 +30,18 @@ struct DatasetRows {
     return n;
   }
 };
-[[nodiscard]] inline std::uint8_t bit_of(const Series& run, std::size_t row, std::size_t sensor,
-                                         std::size_t n_sensors) noexcept {
+std::uint8_t bit_of(const Series& run, std::size_t row, std::size_t sensor, std::size_t n_sensors) noexcept {
   return run.bits[row * n_sensors + sensor];
 }
 
 // By chance: by how much less likely than this level something must be to be told. Rows that follow one another aren't
 // independent, so that a chance that is computed as if they were is too small: hence a level so low (assumed).
-inline constexpr double log_level = -20.7;  ///< natural logarithm of 1e-9
+constexpr double log_level = -20.7;  ///< natural logarithm of 1e-9
 
-inline constexpr std::size_t fewest_edges = 20;  ///< by which columns are compared, and a logger's clock is read
-inline constexpr double may_differ = 0.02;       ///< share of edges by which nearly equal columns may differ (assumed)
-inline constexpr std::size_t longest_period = 60;  ///< rows: gateways report once a minute at least (assumed)
-inline constexpr double model_has_it = 0.9;  ///< of a share that is 1 in the data: the model's own runs come near it
-
-/// How far the model's own datasets go; 0 without any.
-[[nodiscard]] double greatest_of(std::span<const DatasetRows> pilot,
-                                 const std::function<double(const DatasetRows&)>& of);
+constexpr std::size_t fewest_edges = 20;    ///< by which columns are compared, and a logger's clock is read
+constexpr double may_differ = 0.02;         ///< share of edges by which nearly equal columns may differ (assumed)
+constexpr std::size_t longest_period = 60;  ///< rows: gateways report once a minute at least (assumed)
+constexpr double model_has_it = 0.9;        ///< of a share that is 1 in the data: the model's own runs come near it
 
 /// Rows that stand in two places, from `row` and `other_row` on.
 struct Repeat {
@@ -62,27 +58,12 @@ struct Repeats {
   static constexpr std::size_t most = 3;
   std::vector<Repeat> between_runs, in_a_run;  ///< at most so many
 };
-[[nodiscard]] Repeats greatest_repeats(const DatasetRows& data);
-
-/// Adds what it finds. pilot: datasets of the model, whose runs have one replicate.
-using DataCheck = void(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                       std::vector<DataFinding>& findings);
-
-DataCheck compare_columns;  ///< two that are equal, nearly, or opposite
-DataCheck find_constant;    ///< a column of ones
-DataCheck find_silent;      ///< a column without any
-DataCheck find_beats;       ///< a column with ones on a grid
-DataCheck find_polls;       ///< columns that change on a grid only
-DataCheck find_repeat;      ///< rows that stand twice
-DataCheck find_silence;     ///< rows without any motion
-
+/// How far the model's own datasets go; 0 without any.
 double greatest_of(std::span<const DatasetRows> pilot, const std::function<double(const DatasetRows&)>& of) {
   double greatest = 0.0;
   for (const DatasetRows& dataset : pilot) greatest = std::max(greatest, of(dataset));
   return greatest;
 }
-
-namespace {
 
 /// A dataset a realization: its trials ascend.
 std::vector<DatasetRows> datasets_of(std::span<const Series> pilot, std::size_t n_sensors) {
@@ -94,32 +75,7 @@ std::vector<DatasetRows> datasets_of(std::span<const Series> pilot, std::size_t 
   return datasets;
 }
 
-}  // namespace
-
-std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
-  std::vector<DataFinding> findings;
-  if (measured.kind != Measured::Kind::series) return findings;
-  const DatasetRows data{measured.runs, frame.sensors.size()};
-  const std::vector<DatasetRows> sets = datasets_of(pilot, frame.sensors.size());
-  compare_columns(frame, data, sets, findings);
-  find_constant(frame, data, sets, findings);
-  find_beats(frame, data, sets, findings);
-  find_polls(frame, data, sets, findings);
-  find_repeat(frame, data, sets, findings);
-  find_silence(frame, data, sets, findings);
-  find_silent(frame, data, sets, findings);
-  return findings;
-}
-
-bool any_impossible(std::span<const DataFinding> findings) noexcept {
-  return std::ranges::any_of(findings, &DataFinding::is_impossible);
-}
-
 // Columns that no sensor's output is like.
-
-namespace {
-
-using What = DataFinding::What;
 
 constexpr std::size_t fewest_beats = 12;  ///< in a run: what sweeps to and fro keeps to a grid of rows for a while
 
@@ -158,8 +114,6 @@ double log_chance(const Edges& edges, double q) {
          (n - k) * std::log(q);
 }
 
-}  // namespace
-
 void compare_columns(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                      std::vector<DataFinding>& findings) {
   for (std::size_t other = 1; other < data.n_sensors; ++other) {
@@ -183,24 +137,32 @@ void compare_columns(const StudyFrame& frame, const DatasetRows& data, std::span
   }
 }
 
-namespace {
-
 // One column.
 
-}  // namespace
+struct BitCounts {
+  std::size_t n_known = 0, n_ones = 0;
+};
+
+BitCounts counts_of(const DatasetRows& data, std::size_t sensor) {
+  BitCounts counts;
+  for (const Series& run : data.runs) {
+    for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
+      const std::uint8_t bit = bit_of(run, row, sensor, data.n_sensors);
+      counts.n_known += bit != unknown_bit ? 1 : 0;
+      counts.n_ones += bit == 1 ? 1 : 0;
+    }
+  }
+  return counts;
+}
 
 /// All known rows are 1, the first ones too, though the model's runs of these trials begin without.
 void find_constant(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                    std::vector<DataFinding>& findings) {
   for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
-    std::size_t n_known = 0, n_ones = 0;
+    const auto [n_known, n_ones] = counts_of(data, sensor);
+    if (n_known == 0 || n_ones < n_known) continue;
     double chance = 0.0;
     for (const Series& run : data.runs) {
-      for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
-        const std::uint8_t bit = bit_of(run, row, sensor, data.n_sensors);
-        n_known += bit != unknown_bit ? 1 : 0;
-        n_ones += bit == 1 ? 1 : 0;
-      }
       double n = 0.0, n_begin_so = 0.0;
       for (const DatasetRows& dataset : pilot) {
         for (const Series& simulated : dataset.runs) {
@@ -211,41 +173,26 @@ void find_constant(const StudyFrame& frame, const DatasetRows& data, std::span<c
       }
       if (!run.bits.empty() && run.bits[sensor] == 1) chance += std::log((n_begin_so + 1.0) / (n + 2.0));
     }
-    if (n_known == 0) continue;
-    if (n_ones == n_known && chance <= log_level) {
-      findings.push_back({.what = What::constant_column,
-                          .sensors = {frame.sensors[sensor]},
-                          .n_rows = n_known,
-                          .chance = std::exp(chance)});
-    }
+    if (chance > log_level) continue;
+    findings.push_back({.what = What::constant_column,
+                        .sensors = {frame.sensors[sensor]},
+                        .n_rows = n_known,
+                        .chance = std::exp(chance)});
   }
 }
 
 /// No row is 1, though every realization of the model has some: a dead sensor is in the catalogue.
 void find_silent(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                  std::vector<DataFinding>& findings) {
-  const auto counts = [](const DatasetRows& of, std::size_t sensor) {
-    std::pair<std::size_t, std::size_t> known_and_ones;
-    for (const Series& run : of.runs) {
-      for (std::size_t row = 0; row < run.n_rows(of.n_sensors); ++row) {
-        const std::uint8_t bit = bit_of(run, row, sensor, of.n_sensors);
-        known_and_ones.first += bit != unknown_bit ? 1 : 0;
-        known_and_ones.second += bit == 1 ? 1 : 0;
-      }
-    }
-    return known_and_ones;
-  };
   for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
-    const auto [n_known, n_ones] = counts(data, sensor);
+    const auto [n_known, n_ones] = counts_of(data, sensor);
     if (n_known == 0 || n_ones > 0) continue;
-    const auto moves = [&](const DatasetRows& d) { return counts(d, sensor).second > 0; };
+    const auto moves = [&](const DatasetRows& d) { return counts_of(d, sensor).n_ones > 0; };
     if (!std::ranges::all_of(pilot, moves)) continue;
     findings.push_back(
         {.what = What::silent_column, .sensors = {frame.sensors[sensor]}, .n_rows = n_known, .is_impossible = false});
   }
 }
-
-namespace {
 
 bool is_alone(const Series& run, std::size_t row, std::size_t sensor, std::size_t n_sensors) {
   return row > 0 && row + 1 < run.n_rows(n_sensors) && bit_of(run, row, sensor, n_sensors) == 1 &&
@@ -303,8 +250,6 @@ Beats beats_of(const DatasetRows& data, std::size_t sensor, std::size_t period) 
   return beats;
 }
 
-}  // namespace
-
 void find_beats(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                 std::vector<DataFinding>& findings) {
   for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
@@ -324,8 +269,6 @@ void find_beats(const StudyFrame& frame, const DatasetRows& data, std::span<cons
 }
 
 // Finds rows that stand in a dataset twice: windows of rows by their hash, then as far as they go on alike.
-
-namespace {
 
 constexpr std::size_t window_rows = 12;     ///< shorter repeats aren't looked at
 constexpr std::size_t fewest_changes = 4;   ///< in such a window
@@ -382,7 +325,7 @@ void keep_greatest(std::vector<Repeat>& repeats) {
   repeats = std::move(kept);
 }
 
-struct Place {
+struct RowPlace {
   std::size_t run = 0, row = 0;
 };
 
@@ -404,7 +347,7 @@ class RepeatFinder {
   }
 
  private:
-  void look_at(const Place& here) {
+  void look_at(const RowPlace& here) {
     const std::span<const Symbol> window = std::span(symbols_[here.run]).subspan(here.row, window_rows);
     std::size_t n_changes = 0;
     std::uint64_t hash = 0;
@@ -414,13 +357,13 @@ class RepeatFinder {
       hash ^= hash >> 29U;
     }
     if (n_changes < fewest_changes) return;
-    std::vector<Place>& places = places_[hash];
-    for (const Place& there : places) compare(there, here);
+    std::vector<RowPlace>& places = places_[hash];
+    for (const RowPlace& there : places) compare(there, here);
     if (places.size() < most_places) places.push_back(here);
   }
 
   /// Runs of one trial repeat their choreography, and what goes by the clock is the same in all runs that begin alike.
-  [[nodiscard]] bool may_repeat(const Place& there, const Place& here, std::size_t n) const {
+  [[nodiscard]] bool may_repeat(const RowPlace& there, const RowPlace& here, std::size_t n) const {
     if (there.run == here.run) return there.row + n < here.row;  // or it goes on as its own repeat: a beat
     if (data_.runs[there.run].trial == data_.runs[here.run].trial) return false;
     const std::size_t apart = std::max(there.row, here.row) - std::min(there.row, here.row);
@@ -428,7 +371,7 @@ class RepeatFinder {
     return apart > aligned_within || static_cast<double>(n) >= whole_run * static_cast<double>(shorter);
   }
 
-  void compare(const Place& there, const Place& here) {
+  void compare(const RowPlace& there, const RowPlace& here) {
     // What began earlier has been looked at as far as it goes.
     const auto line =
         std::pair(there.run, static_cast<std::ptrdiff_t>(here.row) - static_cast<std::ptrdiff_t>(there.row));
@@ -447,21 +390,15 @@ class RepeatFinder {
   }
 
   const DatasetRows& data_;
-  std::vector<std::vector<Symbol>> symbols_;                      ///< of each run
-  std::unordered_map<std::uint64_t, std::vector<Place>> places_;  ///< of each window's hash, up to here
+  std::vector<std::vector<Symbol>> symbols_;                         ///< of each run
+  std::unordered_map<std::uint64_t, std::vector<RowPlace>> places_;  ///< of each window's hash, up to here
   std::unordered_map<std::size_t, std::size_t> reached_;  ///< row of this run, by the other run and how far apart
   Repeats found_;
 };
 
-}  // namespace
-
 Repeats greatest_repeats(const DatasetRows& data) { return RepeatFinder(data).find(); }
 
 // Rows of all sensors together that no logger hears.
-
-namespace {
-
-using What = DataFinding::What;
 
 constexpr double beyond_model = 1.5;          ///< times as much as any of the model's runs has (assumed)
 constexpr std::size_t shortest_silence = 20;  ///< rows: what is shorter isn't told
@@ -494,8 +431,6 @@ Polls polls_of(const DatasetRows& data, std::size_t period) {
   return polls;
 }
 
-}  // namespace
-
 void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                 std::vector<DataFinding>& findings) {
   for (std::size_t period = longest_period; period >= 2; --period) {
@@ -511,13 +446,9 @@ void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<cons
   }
 }
 
-namespace {
-
-DataFinding::Place place(const StudyFrame& frame, const Series& run, std::size_t row, std::size_t n_rows) {
+DataFinding::Rows place(const StudyFrame& frame, const Series& run, std::size_t row, std::size_t n_rows) {
   return {frame.trials[run.trial], run.replicate, row + 1, row + n_rows};
 }
-
-}  // namespace
 
 /// Two beats together repeat rows in many places, so that one repeat must be beyond the third of the data as well; in a
 /// single run, it is merely odd.
@@ -547,8 +478,6 @@ void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<con
   }
 }
 
-namespace {
-
 /// Rows without any motion between two with some.
 struct Gap {
   std::size_t run = 0, row = 0, n_rows = 0;
@@ -557,13 +486,13 @@ struct Gap {
 std::vector<Gap> gaps_of(const DatasetRows& data, std::size_t number) {
   const Series& run = data.runs[number];
   std::vector<Gap> gaps;
-  std::optional<std::size_t> last;  // row with motion
+  std::size_t after_last = 0;  // row after the last one with motion; 0: none, or unknown rows since
   for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
     const auto bits = std::span(run.bits).subspan(row * data.n_sensors, data.n_sensors);
-    if (std::ranges::find(bits, unknown_bit) != bits.end()) last.reset();
+    if (std::ranges::find(bits, unknown_bit) != bits.end()) after_last = 0;
     if (std::ranges::find(bits, 1) == bits.end()) continue;
-    if (last && row > *last + 1) gaps.push_back({number, *last + 1, row - *last - 1});
-    last = row;
+    if (after_last > 0 && row > after_last) gaps.push_back({number, after_last, row - after_last});
+    after_last = row + 1;
   }
   return gaps;
 }
@@ -641,13 +570,32 @@ std::optional<DataFinding> odd_silence(const StudyFrame& frame, const DatasetRow
                      .is_impossible = false};
 }
 
-}  // namespace
-
 void find_silence(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                   std::vector<DataFinding>& findings) {
   std::optional<DataFinding> found = impossible_silence(frame, data, pilot);
   if (!found) found = odd_silence(frame, data, pilot);
   if (found) findings.push_back(std::move(*found));
+}
+
+}  // namespace
+
+std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
+  std::vector<DataFinding> findings;
+  if (measured.kind != Measured::Kind::series) return findings;
+  const DatasetRows data{measured.runs, frame.sensors.size()};
+  const std::vector<DatasetRows> sets = datasets_of(pilot, frame.sensors.size());
+  compare_columns(frame, data, sets, findings);
+  find_constant(frame, data, sets, findings);
+  find_beats(frame, data, sets, findings);
+  find_polls(frame, data, sets, findings);
+  find_repeat(frame, data, sets, findings);
+  find_silence(frame, data, sets, findings);
+  find_silent(frame, data, sets, findings);
+  return findings;
+}
+
+bool any_impossible(std::span<const DataFinding> findings) noexcept {
+  return std::ranges::any_of(findings, &DataFinding::is_impossible);
 }
 
 }  // namespace pirsim::reconcile

@@ -5,26 +5,23 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <span>
 #include <string_view>
 #include <utility>
 
-#include "files/disk/compression.hpp"
-#include "files/disk/file.hpp"
 #include "model/schema/check_script.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/error.hpp"
-#include "reconcile/data/measured_reader.hpp"
+#include "stats/matrix.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 /// Who notes comings and goings knows them to about a minute: the same as the usual nuisance.
 constexpr double around_change_s = 60.0;      // assumed (30-120)
-constexpr std::size_t fewest_unit_rows = 20;  ///< of a unit; assumed (10-40)
-constexpr std::size_t wanted_units = 12;      ///< of all numbers of people together; assumed (8-20)
+constexpr std::size_t fewest_part_rows = 20;  ///< of a part; assumed (10-40)
+constexpr std::size_t wanted_parts = 12;      ///< of all numbers of people together; assumed (8-20)
 constexpr std::size_t fewest_parts = 2, most_parts = 6;
 constexpr int most_told_apart = 4;  ///< people; more are put together, twice as many each time
 
@@ -96,7 +93,7 @@ class Presence {
     }
   }
   struct There {
-    std::int32_t people = Units::not_sure;
+    std::int32_t people = DayParts::not_sure;
     std::string state;
   };
   [[nodiscard]] const There& between(double from_s, double to_s) const {
@@ -117,88 +114,88 @@ class Presence {
   };
   std::vector<Change> changes_;
   std::vector<Count> counts_;
-  const There untold_{Units::not_sure, "people as told"}, changing_{Units::not_sure, "comings and goings"};
+  const There untold_{DayParts::not_sure, "people as told"}, changing_{DayParts::not_sure, "comings and goings"};
 };
 
 /// "10:49", with the date if the data have several days; seconds of the run without a clock.
-std::string time_text(const Units& units, std::size_t day, std::size_t row, double window_s) {
+std::string time_text(const DayParts& parts, std::size_t day, std::size_t row, double window_s) {
   const double run_s = static_cast<double>(row) * window_s;
-  if (units.begins_s.empty()) return std::to_string(std::llround(run_s)) + " s";
+  if (parts.begins_s.empty()) return std::to_string(std::llround(run_s)) + " s";
   constexpr std::size_t date_at = 5, time_at = 11, time_length = 5;
-  const std::string text = RunClock{units.begins_s[day]}.text(run_s);
+  const std::string text = RunClock{parts.begins_s[day]}.text(run_s);
   const std::string time = text.substr(time_at, time_length);
   const bool same_day =
-      units.n_days == 1 &&
-      RunClock{units.begins_s.front()}.begin_day() ==
-          RunClock{units.begins_s.front() + std::llround(static_cast<double>(units.n_rows) * window_s)}.begin_day();
+      parts.n_days == 1 &&
+      RunClock{parts.begins_s.front()}.begin_day() ==
+          RunClock{parts.begins_s.front() + std::llround(static_cast<double>(parts.n_rows) * window_s)}.begin_day();
   return same_day ? time : text.substr(date_at, time_at - 1 - date_at) + " " + time;
 }
 
 /// Rows in the order of time, with what they have in common.
-struct Part {
+struct PartRows {
   std::string state;
   std::vector<std::size_t> rows;
 };
 
 /// Splits the rows of each state into parts of equal length, one after the other; in order of their beginnings.
-std::vector<Part> parts_of(const std::map<std::string, std::vector<std::size_t>>& rows_of_state) {
+std::vector<PartRows> split_rows(const std::map<std::string, std::vector<std::size_t>>& rows_of_state) {
   const std::size_t n_states = static_cast<std::size_t>(
-      std::ranges::count_if(rows_of_state, [](const auto& state) { return state.second.size() >= fewest_unit_rows; }));
-  const std::size_t parts = std::clamp(wanted_units / std::max<std::size_t>(1, n_states), fewest_parts, most_parts);
-  std::vector<Part> all;
+      std::ranges::count_if(rows_of_state, [](const auto& state) { return state.second.size() >= fewest_part_rows; }));
+  const std::size_t parts = std::clamp(wanted_parts / std::max<std::size_t>(1, n_states), fewest_parts, most_parts);
+  std::vector<PartRows> all;
   for (const auto& [state, rows] : rows_of_state) {
-    if (rows.size() < fewest_unit_rows) continue;
-    const std::size_t n = std::clamp(rows.size() / fewest_unit_rows, std::size_t{1}, parts);
+    if (rows.size() < fewest_part_rows) continue;
+    const std::size_t n = std::clamp(rows.size() / fewest_part_rows, std::size_t{1}, parts);
     for (std::size_t part = 0; part < n; ++part) {
       const auto at = [&](std::size_t i) { return rows.begin() + static_cast<std::ptrdiff_t>(i * rows.size() / n); };
       all.push_back({state, {at(part), at(part + 1)}});
     }
   }
-  std::ranges::stable_sort(all, {}, [](const Part& part) { return part.rows.front(); });
+  std::ranges::stable_sort(all, {}, [](const PartRows& part) { return part.rows.front(); });
   return all;
 }
 
-std::string name_of(const Units& units, const Part& part, double window_s) {
+std::string name_of(const DayParts& parts, const PartRows& part, double window_s) {
   const std::size_t first = part.rows.front(), last = part.rows.back();
-  return part.state + " from " + time_text(units, first / units.n_rows, first % units.n_rows, window_s) + " to " +
-         time_text(units, last / units.n_rows, last % units.n_rows + 1, window_s);
+  return part.state + " from " + time_text(parts, first / parts.n_rows, first % parts.n_rows, window_s) + " to " +
+         time_text(parts, last / parts.n_rows, last % parts.n_rows + 1, window_s);
 }
 
 }  // namespace
 
-Units units_of(const ScriptSpec& script) {
-  Units units;
+DayParts day_parts_of(const ScriptSpec& script) {
+  DayParts parts;
   const double window_s = static_cast<double>(script.sensing.ticks_per_window) / script.sensing.tick_rate_hz;
-  if (script.trials.size() != 1 || !script.trials.front().occupancy) return units;
+  if (script.trials.size() != 1 || !script.trials.front().occupancy) return parts;
   const TrialSpec& trial = script.trials.front();
   const OccupancyRuns runs = runs_of(*trial.occupancy, script.begin);
   const double duration_s = trial.duration_s.value_or(runs.duration_s);
-  units.n_rows = static_cast<std::size_t>(std::max(0.0, std::floor(duration_s / window_s + 1e-6)));
-  if (units.n_rows == 0 || runs.begins_s.empty()) return units;
-  units.trial = trial.id;
-  units.n_days = runs.begins_s.size();
-  units.of_row.assign(units.n_days * units.n_rows, Units::none);
-  units.people.assign(units.of_row.size(), Units::not_sure);
+  parts.n_rows = static_cast<std::size_t>(std::max(0.0, std::floor(duration_s / window_s + 1e-6)));
+  if (parts.n_rows == 0 || runs.begins_s.empty()) return parts;
+  parts.trial = trial.id;
+  parts.n_days = runs.begins_s.size();
+  parts.of_row.assign(parts.n_days * parts.n_rows, DayParts::none);
+  parts.people.assign(parts.of_row.size(), DayParts::not_sure);
   for (const double begin_s : runs.begins_s) {
-    if (runs.clock) units.begins_s.push_back(runs.clock->begin_s + std::llround(begin_s - runs.begins_s.front()));
+    if (runs.clock) parts.begins_s.push_back(runs.clock->begin_s + std::llround(begin_s - runs.begins_s.front()));
   }
   const Presence presence(*trial.occupancy);
   std::map<std::string, std::vector<std::size_t>> rows_of_state;
-  for (std::size_t i = 0; i < units.of_row.size(); ++i) {
-    const double from_s = runs.begins_s[i / units.n_rows] + static_cast<double>(i % units.n_rows) * window_s;
+  for (std::size_t i = 0; i < parts.of_row.size(); ++i) {
+    const double from_s = runs.begins_s[i / parts.n_rows] + static_cast<double>(i % parts.n_rows) * window_s;
     const Presence::There& there = presence.between(from_s, from_s + window_s);
-    units.people[i] = there.people;
+    parts.people[i] = there.people;
     rows_of_state[there.state].push_back(i);
   }
-  for (const Part& part : parts_of(rows_of_state)) {
-    for (const std::size_t row : part.rows) units.of_row[row] = static_cast<std::uint16_t>(units.names.size());
-    units.names.push_back(name_of(units, part, window_s));
+  for (const PartRows& part : split_rows(rows_of_state)) {
+    for (const std::size_t row : part.rows) parts.of_row[row] = static_cast<std::uint16_t>(parts.names.size());
+    parts.names.push_back(name_of(parts, part, window_s));
   }
-  if (units.names.empty())
+  if (parts.names.empty())
     throw Error(ErrorCode::input, trial.occupancy->where,
-                "too short to be compared: fewer than " + std::to_string(fewest_unit_rows) +
+                "too short to be compared: fewer than " + std::to_string(fewest_part_rows) +
                     " windows have the same number of people in them");
-  return units;
+  return parts;
 }
 
 void require_known_presence(const ScriptSpec& script) {
@@ -218,67 +215,63 @@ StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script) {
   for (const SensorSpec& sensor : scene.sensors) frame.sensors.push_back(sensor.id);
   frame.counted_phases = script.summary.phases;
   frame.window_s = static_cast<double>(script.sensing.ticks_per_window) / script.sensing.tick_rate_hz;
-  frame.units = units_of(script);
-  if (frame.units.empty()) return frame;
-  frame.trials = frame.units.names;
-  frame.counted_phases.clear();  // units say what is counted
+  frame.day_parts = day_parts_of(script);
+  if (frame.day_parts.empty()) return frame;
+  frame.trials = frame.day_parts.names;
+  frame.counted_phases.clear();  // parts say what is counted
   return frame;
 }
 
 StudyFrame StudyFrame::of_whole_runs() const {
   StudyFrame whole = *this;
-  if (!units.empty()) whole.trials = {units.trial};
-  whole.units = {};
+  if (!day_parts.empty()) whole.trials = {day_parts.trial};
+  whole.day_parts = {};
   return whole;
 }
 
-std::vector<Series> in_units(const StudyFrame& frame, std::vector<Series> runs) {
-  const Units& units = frame.units;
-  if (units.empty()) return runs;
+std::vector<Series> in_day_parts(const StudyFrame& frame, std::vector<Series> runs) {
+  const DayParts& parts = frame.day_parts;
+  if (parts.empty()) return runs;
   const std::size_t n = frame.sensors.size();
   std::map<int, std::vector<const Series*>> datasets;  // by their numbers, the runs of each day
   for (const Series& run : runs) {
     const int day = (run.replicate - 1) % frame.n_days(), dataset = (run.replicate - 1) / frame.n_days();
-    auto& days = datasets.try_emplace(dataset, units.n_days, nullptr).first->second;
+    auto& days = datasets.try_emplace(dataset, parts.n_days, nullptr).first->second;
     days[static_cast<std::size_t>(day)] = &run;
   }
   std::vector<Series> all;
   for (const auto& [dataset, days] : datasets) {
-    std::vector<Series> own(units.names.size());
-    std::vector<std::size_t> last(own.size(), 0);  // row of a unit, from 1
-    for (std::size_t i = 0; i < units.of_row.size(); ++i) {
-      const std::uint16_t unit = units.of_row[i];
-      if (unit == Units::none) continue;
-      const std::size_t day = i / units.n_rows, row = i % units.n_rows;
-      std::vector<std::uint8_t>& bits = own[unit].bits;
-      if (!bits.empty() && (last[unit] != i || row == 0)) bits.insert(bits.end(), n, unknown_bit);
-      last[unit] = i + 1;
+    std::vector<Series> own(parts.names.size());
+    std::vector<std::size_t> last(own.size(), 0);  // row of a part, from 1
+    for (std::size_t i = 0; i < parts.of_row.size(); ++i) {
+      const std::uint16_t part = parts.of_row[i];
+      if (part == DayParts::none) continue;
+      const std::size_t day = i / parts.n_rows, row = i % parts.n_rows;
+      std::vector<std::uint8_t>& bits = own[part].bits;
+      if (!bits.empty() && (last[part] != i || row == 0)) bits.insert(bits.end(), n, unknown_bit);
+      last[part] = i + 1;
       const bool there = days[day] != nullptr && row < days[day]->n_rows(n);
       for (std::size_t sensor = 0; sensor < n; ++sensor)
         bits.push_back(there ? days[day]->bits[row * n + sensor] : unknown_bit);
     }
-    for (std::size_t unit = 0; unit < own.size(); ++unit) {
-      own[unit].trial = unit;
-      own[unit].replicate = dataset + 1;
-      own[unit].main_end = own[unit].n_rows(n);
-      const bool known = std::ranges::any_of(own[unit].bits, [](std::uint8_t bit) { return bit != unknown_bit; });
-      if (known) all.push_back(std::move(own[unit]));
+    for (std::size_t part = 0; part < own.size(); ++part) {
+      own[part].trial = part;
+      own[part].replicate = dataset + 1;
+      own[part].main_end = own[part].n_rows(n);
+      const bool known = std::ranges::any_of(own[part].bits, [](std::uint8_t bit) { return bit != unknown_bit; });
+      if (known) all.push_back(std::move(own[part]));
     }
   }
   std::ranges::stable_sort(all, {}, [](const Series& run) { return std::pair(run.trial, run.replicate); });
   return all;
 }
 
-std::vector<std::size_t> all_trials(const StudyFrame& frame) {
-  std::vector<std::size_t> trials(frame.trials.size());
-  std::iota(trials.begin(), trials.end(), std::size_t{0});
-  return trials;
-}
+std::vector<std::size_t> all_trials(const StudyFrame& frame) { return stats::numbers_to(frame.trials.size()); }
 
 std::optional<Series> series_of(const StudyFrame& frame, int replicate, std::string_view trial,
                                 const std::vector<Sample>& samples) {
   const auto known = std::ranges::find(frame.trials, trial);
-  const bool is_day = !frame.units.empty() && trial == frame.units.trial;
+  const bool is_day = !frame.day_parts.empty() && trial == frame.day_parts.trial;
   if ((known == frame.trials.end() && !is_day) || samples.empty()) return std::nullopt;
   Series series;
   series.trial = is_day ? 0 : static_cast<std::size_t>(known - frame.trials.begin());
@@ -311,60 +304,6 @@ std::vector<std::size_t> Measured::trials() const {
   for (const Series& run : runs) all.insert(run.trial);
   for (const Sum& sum : sums) all.insert(sum.trial);
   return {all.begin(), all.end()};
-}
-
-namespace {
-
-void note_missing_trials(const StudyFrame& frame, Measured& measured) {
-  std::vector<std::string> absent;
-  const std::vector<std::size_t> present = measured.trials();
-  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
-    if (!std::ranges::binary_search(present, trial)) absent.push_back(frame.trials[trial]);
-  }
-  if (absent.empty()) return;
-  measured.notes.push_back({DataNote::What::trials_absent, absent.size(), absent});
-}
-
-std::optional<std::int64_t> begin_of(const ScriptSpec& script) {
-  const std::optional<RunClock> clock = clock_of(script, script.trials.front());
-  return clock ? std::optional(clock->begin_s) : std::nullopt;
-}
-
-}  // namespace
-
-Measured parse_measured(std::string_view text, const std::string& file, const StudyFrame& frame) {
-  Measured measured = MeasuredReader(text, file, frame).read();
-  note_missing_trials(frame, measured);
-  return measured;
-}
-
-Measured read_measured(const std::filesystem::path& file, const StudyFrame& frame) {
-  return parse_measured(io::decompressed(io::read_input(file), io::max_text_file_bytes), file.string(), frame);
-}
-
-Measured measured_of(const Log& log, const SceneSpec& scene, const ScriptSpec& script) {
-  require_known_presence(script);
-  const StudyFrame frame = frame_of(scene, script);
-  Measured measured = measured_of(log, frame, begin_of(script));
-  note_missing_trials(frame, measured);
-  return measured;
-}
-
-Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene, const ScriptSpec& script,
-                       const LogMap& map) {
-  require_known_presence(script);
-  // A pipe can't be looked into before it is read: a map says that it is a log.
-  const bool is_piped_log = map != LogMap{} && !std::filesystem::is_regular_file(file);
-  if (is_piped_log || is_log(file)) return measured_of(io::read_log(std::span(&file, 1), map), scene, script);
-  if (map != LogMap{})
-    throw Error(ErrorCode::usage, file.string() + " is no log (docs/formats/log.md), so that a map says nothing of it");
-  return read_measured(file, frame_of(scene, script));
-}
-
-Measured parse_measured(std::string_view text, const std::string& file, const SceneSpec& scene,
-                        const ScriptSpec& script) {
-  require_known_presence(script);
-  return parse_measured(text, file, frame_of(scene, script));
 }
 
 ScriptSpec with_holds(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured) {

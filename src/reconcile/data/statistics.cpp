@@ -212,127 +212,6 @@ double arm_period_s(const TrialSpec& trial) {
   return (work != nullptr ? *work : action::Work{}).arm_period_s;
 }
 
-}  // namespace
-
-std::string name(CellStatistic statistic) {
-  const auto index = static_cast<std::size_t>(statistic);
-  if (statistic == CellStatistic::shift_s) return "shift_s";
-  return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
-}
-std::string name(TrialStatistic statistic) {
-  const auto index = static_cast<std::size_t>(statistic);
-  return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);
-}
-
-std::size_t n_statistics(const StudyFrame& frame) noexcept {
-  return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));
-}
-
-double seconds_of(const DatasetStatistics& dataset, std::size_t trial, std::size_t sensor) {
-  return static_cast<double>(dataset.cell(trial, sensor, CellStatistic::seconds));
-}
-
-std::vector<double> seconds_of(const StudyFrame& frame, const stats::Matrix<float>& datasets, std::size_t trial,
-                               std::size_t sensor) {
-  std::vector<double> seconds;
-  for (std::size_t row = 0; row < datasets.rows(); ++row) {
-    const double of_row = seconds_of(DatasetStatistics(frame, datasets.row(row)), trial, sensor);
-    if (!std::isnan(of_row)) seconds.push_back(of_row);
-  }
-  return seconds;
-}
-
-std::vector<std::vector<std::size_t>> alike_places(const StudyFrame& frame) {
-  std::vector<std::vector<std::size_t>> alike;
-  std::size_t next = 0;
-  const auto add_block = [&](std::size_t n_owners, std::size_t n_each) {
-    for (std::size_t k = 0; k < n_each; ++k) {
-      alike.emplace_back();
-      for (std::size_t owner = 0; owner < n_owners; ++owner) alike.back().push_back(next + owner * n_each + k);
-    }
-    next += n_owners * n_each;
-  };
-  add_block(frame.n_cells(), n_cell_statistics);
-  add_block(frame.trials.size(), n_trial_statistics);
-  add_block(frame.trials.size(), n_pairs(frame));
-  return alike;
-}
-
-Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs) {
-  const std::size_t n = frame.sensors.size();
-  Profile profile;
-  profile.trials.resize(frame.trials.size());
-  std::vector<double> n_runs(frame.trials.size(), 0.0);
-  for (const Series& run : runs) {
-    Profile::Trial& trial = profile.trials[run.trial];
-    trial.n_main = std::max(trial.n_main, run.main_end - run.main_begin);
-    trial.expected.resize(trial.n_main * n, 0.0F);
-    for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
-      if (run.bits[i] == 1) trial.expected[i - run.main_begin * n] += 1.0F;
-    }
-    n_runs[run.trial] += 1.0;
-  }
-  for (std::size_t t = 0; t < profile.trials.size(); ++t) {
-    Profile::Trial& trial = profile.trials[t];
-    trial.movement.assign(trial.n_main, 0.0F);
-    for (std::size_t i = 0; i < trial.expected.size(); ++i) {
-      trial.expected[i] /= static_cast<float>(n_runs[t]);
-      trial.movement[i / n] += trial.expected[i];
-    }
-    std::vector<float> sorted = trial.movement;
-    std::ranges::sort(sorted, std::greater<>());
-    const auto last_busy = static_cast<std::size_t>(busy_share * static_cast<double>(trial.n_main));
-    float mean = 0.0F;
-    for (const float m : sorted) mean += m / static_cast<float>(trial.n_main);
-    for (float& m : trial.movement) {
-      trial.busy.push_back(!sorted.empty() && m > 0.0F && m >= sorted[last_busy] ? 1 : 0);
-      m -= mean;
-    }
-    trial.cycle_rows = arm_period_s(frame.units.empty() ? script.trials[t] : script.trials.front()) / frame.window_s;
-  }
-  return profile;
-}
-
-std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
-                                 std::span<const Series> runs) {
-  std::vector<TrialStatistics> trials;
-  trials.reserve(frame.trials.size());
-  for (std::size_t t = 0; t < frame.trials.size(); ++t) trials.emplace_back(frame, profile.trials[t]);
-  for (const DataShape::Run& wanted : shape.runs) {
-    const auto run = std::ranges::find_if(
-        runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
-    if (run != runs.end()) trials[wanted.trial].add(*run, wanted, shape.kind);
-  }
-  std::vector<float> values(n_statistics(frame), nothing_known);
-  for (std::size_t t = 0; t < trials.size(); ++t) trials[t].write(t, shape, {frame, values});
-  return values;
-}
-
-std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
-                                 const Measured& measured) {
-  if (measured.kind == Measured::Kind::series) return statistics_of(frame, shape, profile, measured.runs);
-  std::vector<std::vector<double>> sums(frame.n_cells());
-  for (const Measured::Sum& sum : measured.sums) sums[frame.cell(sum.trial, sum.sensor)].push_back(sum.seconds);
-  std::vector<float> values(n_statistics(frame), nothing_known);
-  const Statistics out(frame, std::span(values));
-  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
-    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
-      const std::vector<double>& own = sums[frame.cell(trial, sensor)];
-      if (own.empty()) continue;
-      double mean = 0.0, squares = 0.0;
-      for (const double seconds : own) mean += seconds / static_cast<double>(own.size());
-      for (const double seconds : own) squares += (seconds - mean) * (seconds - mean);
-      out.cell(trial, sensor, CellStatistic::seconds) = static_cast<float>(mean);
-      if (own.size() < 2) continue;
-      out.cell(trial, sensor, CellStatistic::run_variance) =
-          static_cast<float>(squares / static_cast<double>(own.size() - 1));
-    }
-  }
-  return values;
-}
-
-namespace {
-
 constexpr float silent_below = 0.02F;  ///< expected share of rows with motion
 constexpr std::size_t block_rows = 10;
 constexpr std::size_t shortest_period_rows = 8;
@@ -495,6 +374,123 @@ double shift_rows(const BitSeries& series, double window_s) {
 }
 
 }  // namespace
+
+std::string name(CellStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  if (statistic == CellStatistic::shift_s) return "shift_s";
+  return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
+}
+std::string name(TrialStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);
+}
+
+std::size_t n_statistics(const StudyFrame& frame) noexcept {
+  return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));
+}
+
+double seconds_of(const DatasetStatistics& dataset, std::size_t trial, std::size_t sensor) {
+  return static_cast<double>(dataset.cell(trial, sensor, CellStatistic::seconds));
+}
+
+std::vector<double> seconds_of(const StudyFrame& frame, const stats::Matrix<float>& datasets, std::size_t trial,
+                               std::size_t sensor) {
+  std::vector<double> seconds;
+  for (std::size_t row = 0; row < datasets.rows(); ++row) {
+    const double of_row = seconds_of(DatasetStatistics(frame, datasets.row(row)), trial, sensor);
+    if (!std::isnan(of_row)) seconds.push_back(of_row);
+  }
+  return seconds;
+}
+
+std::vector<std::vector<std::size_t>> alike_places(const StudyFrame& frame) {
+  std::vector<std::vector<std::size_t>> alike;
+  std::size_t next = 0;
+  const auto add_block = [&](std::size_t n_owners, std::size_t n_each) {
+    for (std::size_t k = 0; k < n_each; ++k) {
+      alike.emplace_back();
+      for (std::size_t owner = 0; owner < n_owners; ++owner) alike.back().push_back(next + owner * n_each + k);
+    }
+    next += n_owners * n_each;
+  };
+  add_block(frame.n_cells(), n_cell_statistics);
+  add_block(frame.trials.size(), n_trial_statistics);
+  add_block(frame.trials.size(), n_pairs(frame));
+  return alike;
+}
+
+Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs) {
+  const std::size_t n = frame.sensors.size();
+  Profile profile;
+  profile.trials.resize(frame.trials.size());
+  std::vector<double> n_runs(frame.trials.size(), 0.0);
+  for (const Series& run : runs) {
+    Profile::Trial& trial = profile.trials[run.trial];
+    trial.n_main = std::max(trial.n_main, run.main_end - run.main_begin);
+    trial.expected.resize(trial.n_main * n, 0.0F);
+    for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
+      if (run.bits[i] == 1) trial.expected[i - run.main_begin * n] += 1.0F;
+    }
+    n_runs[run.trial] += 1.0;
+  }
+  for (std::size_t t = 0; t < profile.trials.size(); ++t) {
+    Profile::Trial& trial = profile.trials[t];
+    trial.movement.assign(trial.n_main, 0.0F);
+    for (std::size_t i = 0; i < trial.expected.size(); ++i) {
+      trial.expected[i] /= static_cast<float>(n_runs[t]);
+      trial.movement[i / n] += trial.expected[i];
+    }
+    std::vector<float> sorted = trial.movement;
+    std::ranges::sort(sorted, std::greater<>());
+    const auto last_busy = static_cast<std::size_t>(busy_share * static_cast<double>(trial.n_main));
+    float mean = 0.0F;
+    for (const float m : sorted) mean += m / static_cast<float>(trial.n_main);
+    for (float& m : trial.movement) {
+      trial.busy.push_back(!sorted.empty() && m > 0.0F && m >= sorted[last_busy] ? 1 : 0);
+      m -= mean;
+    }
+    trial.cycle_rows =
+        arm_period_s(frame.day_parts.empty() ? script.trials[t] : script.trials.front()) / frame.window_s;
+  }
+  return profile;
+}
+
+std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                 std::span<const Series> runs) {
+  std::vector<TrialStatistics> trials;
+  trials.reserve(frame.trials.size());
+  for (std::size_t t = 0; t < frame.trials.size(); ++t) trials.emplace_back(frame, profile.trials[t]);
+  for (const DataShape::Run& wanted : shape.runs) {
+    const Series* run = run_of(runs, wanted);
+    if (run != nullptr) trials[wanted.trial].add(*run, wanted, shape.kind);
+  }
+  std::vector<float> values(n_statistics(frame), nothing_known);
+  for (std::size_t t = 0; t < trials.size(); ++t) trials[t].write(t, shape, {frame, values});
+  return values;
+}
+
+std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                 const Measured& measured) {
+  if (measured.kind == Measured::Kind::series) return statistics_of(frame, shape, profile, measured.runs);
+  std::vector<std::vector<double>> sums(frame.n_cells());
+  for (const Measured::Sum& sum : measured.sums) sums[frame.cell(sum.trial, sum.sensor)].push_back(sum.seconds);
+  std::vector<float> values(n_statistics(frame), nothing_known);
+  const Statistics out(frame, std::span(values));
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
+      const std::vector<double>& own = sums[frame.cell(trial, sensor)];
+      if (own.empty()) continue;
+      double mean = 0.0, squares = 0.0;
+      for (const double seconds : own) mean += seconds / static_cast<double>(own.size());
+      for (const double seconds : own) squares += (seconds - mean) * (seconds - mean);
+      out.cell(trial, sensor, CellStatistic::seconds) = static_cast<float>(mean);
+      if (own.size() < 2) continue;
+      out.cell(trial, sensor, CellStatistic::run_variance) =
+          static_cast<float>(squares / static_cast<double>(own.size() - 1));
+    }
+  }
+  return values;
+}
 
 void add_main_statistics(const BitSeries& series, double window_s, CellValues& values) {
   add_counts(series, window_s, values);

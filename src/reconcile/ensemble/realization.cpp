@@ -49,36 +49,6 @@ void draw_seats(const SceneSpec& scene, const NuisanceSpec& nuisance, Stream& st
   if (unused > 0) occupancy.seats = std::move(seats);
 }
 
-}  // namespace
-
-CountsSpec with_other_times(const CountsSpec& counts, double within_s, Stream& stream) {
-  CountsSpec moved = counts;
-  const std::size_t n = counts.people.size();
-  if (n < 3 || within_s <= 0.0) return moved;
-  std::vector<Knot> knots{{0, 0.0}};
-  for (std::size_t k = 1; k < n; ++k) {
-    if (are_as_many(counts, k)) continue;
-    const double later_s = within_s * (2.0 * stream.uniform() - 1.0);
-    if (knots.back().place < k - 1) knots.push_back({k - 1, later_s});
-    if (k + 1 < n) knots.push_back({k, later_s});
-  }
-  knots.push_back({n - 1, 0.0});
-  for (std::size_t k = 1; k + 1 < n; ++k) {
-    moved.times_s[k] = std::max(counts.times_s[k] + later_at(knots, k), moved.times_s[k - 1] + least_apart_s);
-  }
-  for (std::size_t k = n - 1; k-- > 1;)
-    moved.times_s[k] = std::min(moved.times_s[k], moved.times_s[k + 1] - least_apart_s);
-  return moved;
-}
-
-void draw_presence(const SceneSpec& scene, const NuisanceSpec& nuisance, Stream& stream, OccupancySpec& occupancy) {
-  if (!occupancy.counts) return;
-  draw_seats(scene, nuisance, stream, occupancy);
-  occupancy.counts = with_other_times(*occupancy.counts, nuisance.time_s, stream);
-}
-
-namespace {
-
 constexpr double most_arm_amplitude_m = 0.15;  // what a script may ask for
 
 double between(Stream& stream, double half_width) { return half_width * (2.0 * stream.uniform() - 1.0); }
@@ -203,24 +173,6 @@ void change_presence(const SceneSpec& scene, ScriptSpec& script, const Draw& dra
   }
 }
 
-}  // namespace
-
-Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
-                             std::uint64_t seed, std::uint32_t index, std::uint32_t attempt) {
-  Realization realization{scene, script};
-  const Draw draw{nuisance, seed, index, attempt};
-  move_sensors(realization.scene, draw);
-  move_seats(realization.scene, draw);
-  change_people(realization.script, draw);
-  move_otherwise(realization.script, draw);
-  change_electronics(realization, draw);
-  change_presence(scene, realization.script, draw);
-  realization.script.seed = seed_of(draw);
-  return realization;
-}
-
-namespace {
-
 /// Of these trials; none given: of all.
 std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size_t> trials) {
   std::vector<std::uint32_t> runs;
@@ -247,6 +199,46 @@ std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const Ef
 }
 
 }  // namespace
+
+CountsSpec with_other_times(const CountsSpec& counts, double within_s, Stream& stream) {
+  CountsSpec moved = counts;
+  const std::size_t n = counts.people.size();
+  if (n < 3 || within_s <= 0.0) return moved;
+  std::vector<Knot> knots{{0, 0.0}};
+  for (std::size_t k = 1; k < n; ++k) {
+    if (are_as_many(counts, k)) continue;
+    const double later_s = within_s * (2.0 * stream.uniform() - 1.0);
+    if (knots.back().place < k - 1) knots.push_back({k - 1, later_s});
+    if (k + 1 < n) knots.push_back({k, later_s});
+  }
+  knots.push_back({n - 1, 0.0});
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    moved.times_s[k] = std::max(counts.times_s[k] + later_at(knots, k), moved.times_s[k - 1] + least_apart_s);
+  }
+  for (std::size_t k = n - 1; k-- > 1;)
+    moved.times_s[k] = std::min(moved.times_s[k], moved.times_s[k + 1] - least_apart_s);
+  return moved;
+}
+
+void draw_presence(const SceneSpec& scene, const NuisanceSpec& nuisance, Stream& stream, OccupancySpec& occupancy) {
+  if (!occupancy.counts) return;
+  draw_seats(scene, nuisance, stream, occupancy);
+  occupancy.counts = with_other_times(*occupancy.counts, nuisance.time_s, stream);
+}
+
+Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
+                             std::uint64_t seed, std::uint32_t index, std::uint32_t attempt) {
+  Realization realization{scene, script};
+  const Draw draw{nuisance, seed, index, attempt};
+  move_sensors(realization.scene, draw);
+  move_seats(realization.scene, draw);
+  change_people(realization.script, draw);
+  move_otherwise(realization.script, draw);
+  change_electronics(realization, draw);
+  change_presence(scene, realization.script, draw);
+  realization.script.seed = seed_of(draw);
+  return realization;
+}
 
 std::shared_ptr<const Model> model_to_share(const SceneSpec& scene, const ScriptSpec& script) {
   try {
@@ -276,7 +268,7 @@ struct SimulatedRealization::Traced {
         if (replicate <= first || replicate > first + n) continue;
         add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
       }
-      return in_units(frame, std::move(data));
+      return in_day_parts(frame, std::move(data));
     }
 
     const Model& model;
@@ -331,8 +323,8 @@ std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more,
   altered.script.effects = together(std::move(altered.script.effects), more);
   altered.script.replicates = n * frame_->n_days();
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
-  const Recording tracks =
-      traced_->family.record(model, runs_of(model, frame_->units.empty() ? trials : std::span<const std::size_t>{}));
+  const Recording tracks = traced_->family.record(
+      model, runs_of(model, frame_->day_parts.empty() ? trials : std::span<const std::size_t>{}));
   return Traced::Emitter(model, tracks, traced_->noise, &traced_->emitter)
       .emit(*frame_, model.compiled().stages(), 0, n);
 }

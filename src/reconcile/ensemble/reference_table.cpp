@@ -1,10 +1,7 @@
 #include "reconcile/ensemble/reference_table.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <fstream>
-#include <istream>
-#include <ostream>
 #include <utility>
 
 #include "engine/effects/catalogue.hpp"
@@ -33,60 +30,150 @@ std::uint32_t place_in_catalogue(const effects::Effect& effect) {
   return static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), &effect) - effects::catalogue().begin());
 }
 
-/// Simulates the datasets of single realizations.
-class RealizationJob {
- public:
-  RealizationJob(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
-                 const TableSettings& settings)
-      : source_(source), frame_(frame), n_replicates_(n_replicates), settings_(settings) {
-    for (const std::string& hypothesis : settings.effects) effects_.push_back(&effects::find(hypothesis));
-  }
+/// All effects are trained in the same realizations, so that what is between two of them isn't the realizations' doing.
+/// They are calibrated in realizations that differ as far as there are enough: a few strange ones shall not set the
+/// levels of all.
+bool has_dataset(const effects::Effect& effect, std::uint32_t realization, const TableSettings& settings,
+                 const ScriptSpec& script) {
+  const std::uint32_t wanted =
+      effect.info.reach == effects::Reach::geometry ? settings.n_traced : settings.n_remembered;
+  if (!is_for_calibration(realization)) return realization < wanted;
+  const std::uint32_t n = n_for_calibration(settings.n_realizations);
+  const auto first =
+      static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::catalogue_for(script).size());
+  return (n_for_calibration(realization) + n - first) % n < n_for_calibration(wanted);
+}
 
-  [[nodiscard]] TableChunk run(std::uint32_t index) const {
-    TableChunk chunk;
-    const SimulatedRealization realization(source_, frame_, index, n_replicates_);
-    chunk.datasets.push_back({{0, index, {}}, realization.plain(0, n_replicates_)});
-    for (std::uint32_t e = 0; e < effects_.size(); ++e) {
-      if (has_dataset(*effects_[e], index)) add_effect(chunk, realization, index, e);
-    }
-    return chunk;
-  }
-
- private:
-  /// All effects are trained in the same realizations, so that what is between two of them isn't the realizations'
-  /// doing. They are calibrated in realizations that differ as far as there are enough: a few strange ones shall not
-  /// set the levels of all.
-  [[nodiscard]] bool has_dataset(const effects::Effect& effect, std::uint32_t realization) const {
-    const std::uint32_t wanted =
-        effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
-    if (!is_for_calibration(realization)) return realization < wanted;
-    const std::uint32_t n = n_for_calibration(settings_.n_realizations);
-    const auto first = static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n /
-                                                  effects::catalogue_for(source_.script).size());
-    return (n_for_calibration(realization) + n - first) % n < n_for_calibration(wanted);
-  }
-  void add_effect(TableChunk& chunk, const SimulatedRealization& realization, std::uint32_t index,
-                  std::uint32_t e) const {
-    // What is drawn for an effect doesn't depend on which others are looked for.
-    const std::uint32_t place = place_in_catalogue(*effects_[e]);
+/// Of one realization; settings.effects names every hypothesis.
+TableChunk simulate_datasets(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
+                             const TableSettings& settings, std::uint32_t index) {
+  TableChunk chunk;
+  const SimulatedRealization realization(source, frame, index, n_replicates);
+  chunk.datasets.push_back({{0, index, {}}, realization.plain(0, n_replicates)});
+  for (std::uint32_t e = 0; e < settings.effects.size(); ++e) {
+    const effects::Effect& effect = effects::find(settings.effects[e]);
+    if (!has_dataset(effect, index, settings, source.script)) continue;
+    ++chunk.n_left_out;  // until an attempt gives one
     for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
-      Stream stream({source_.seed, index, place + attempt * effects_per_attempt, Purpose::reference_parameters});
-      const EffectSpec effect =
-          effects::draw_from_prior(*effects_[e], realization.drawn().scene, realization.drawn().script, stream);
-      auto data = realization.with_effects(std::span(&effect, 1), 0, n_replicates_);
+      // What is drawn for an effect doesn't depend on which others are looked for.
+      Stream stream({source.seed, index, place_in_catalogue(effect) + attempt * effects_per_attempt,
+                     Purpose::reference_parameters});
+      const EffectSpec drawn =
+          effects::draw_from_prior(effect, realization.drawn().scene, realization.drawn().script, stream);
+      auto data = realization.with_effects(std::span(&drawn, 1), 0, n_replicates);
       if (!data) continue;
-      chunk.datasets.push_back({{e + 1, index, {effect}}, std::move(*data)});
-      return;
+      chunk.datasets.push_back({{e + 1, index, {drawn}}, std::move(*data)});
+      --chunk.n_left_out;
+      break;
     }
-    ++chunk.n_left_out;
   }
+  return chunk;
+}
 
-  const RealizationSource& source_;
-  const StudyFrame& frame_;
-  int n_replicates_;
-  const TableSettings& settings_;
-  std::vector<const effects::Effect*> effects_;
-};
+// Structured bindings name every field, so that a new one doesn't compile until it stands here.
+
+void add(Fingerprint& print, const DayParts& parts) {
+  const auto& [trial, n_days, n_rows, of_row, people, names, begins_s] = parts;
+  print.add_each(trial, n_days, n_rows, of_row, people, names, begins_s);
+}
+
+void add(Fingerprint& print, const StudyFrame& frame) {
+  const auto& [trials, sensors, counted_phases, window_s, parts] = frame;
+  print.add_each(trials, sensors, counted_phases, window_s);
+  add(print, parts);
+}
+
+void add(Fingerprint& print, const TableSettings& settings) {
+  const auto& [n_realizations, n_remembered, n_traced, hypotheses] = settings;
+  print.add_each(n_realizations, n_remembered, n_traced, hypotheses);
+  for (const std::string& hypothesis : hypotheses) {  // and what is drawn of them
+    for (const effects::ParameterInfo& parameter : effects::find(hypothesis).info.parameters)
+      print.add_each(parameter.name, parameter.low, parameter.high, parameter.scale);
+  }
+}
+
+constexpr std::string_view kind = "pirsim reference table";
+constexpr std::uint32_t format = 3;
+constexpr std::uint32_t items_per_chunk = 25;
+
+void write(BinaryWriter& out, const EffectSpec& effect) {
+  out.write(std::string_view(effect.name));
+  out.write(static_cast<std::uint32_t>(effect.parameters.size()));
+  for (const auto& [name, value] : effect.parameters) {
+    out.write(std::string_view(name));
+    out.write(value);
+  }
+  out.write(static_cast<std::uint32_t>(effect.choices.size()));
+  for (const auto& [name, value] : effect.choices) {
+    out.write(std::string_view(name));
+    out.write(std::string_view(value));
+  }
+}
+
+EffectSpec read_effect(BinaryReader& in) {
+  EffectSpec effect;
+  effect.name = in.read_text();
+  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
+    const std::string name = in.read_text();
+    effect.parameters[name] = in.read<double>();
+  }
+  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
+    const std::string name = in.read_text();
+    effect.choices[name] = in.read_text();
+  }
+  return effect;
+}
+
+/// Eight bits a byte; simulated data know all of them.
+void write(BinaryWriter& out, const Series& run) {
+  out.write(static_cast<std::uint32_t>(run.trial));
+  out.write(static_cast<std::int32_t>(run.replicate));
+  for (const std::size_t n : {run.main_begin, run.main_end, run.bits.size()}) out.write(static_cast<std::uint32_t>(n));
+  std::vector<std::uint8_t> packed((run.bits.size() + 7) / 8, 0);
+  for (std::size_t i = 0; i < run.bits.size(); ++i) {
+    if (run.bits[i] == 1) packed[i / 8] = static_cast<std::uint8_t>(packed[i / 8] | 1U << i % 8);
+  }
+  out.write(packed);
+}
+
+Series read_series(BinaryReader& in) {
+  Series run;
+  run.trial = in.read<std::uint32_t>();
+  run.replicate = in.read<std::int32_t>();
+  run.main_begin = in.read<std::uint32_t>();
+  run.main_end = in.read<std::uint32_t>();
+  const auto n = in.read<std::uint32_t>();
+  const auto packed = in.read_vector<std::uint8_t>();
+  if (packed.size() != (n + 7U) / 8U)
+    throw Error(ErrorCode::input, std::string(kind) + " is damaged: an impossible size");
+  run.bits.reserve(n);
+  for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
+  return run;
+}
+
+TableChunk read_chunk(std::istream& stream, const std::string& key, std::uint32_t number) {
+  BinaryReader in(stream, kind, format);
+  if (in.read_text() != key) throw Error(ErrorCode::input, std::string(kind) + " is of other inputs or settings");
+  if (in.read<std::uint32_t>() != number)
+    throw Error(ErrorCode::input, std::string(kind) + " is of other realizations");
+  TableChunk chunk;
+  chunk.n_left_out = in.read<std::uint32_t>();
+  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
+    SimulatedDataset dataset;
+    dataset.row.hypothesis = in.read<std::uint32_t>();
+    dataset.row.realization = in.read<std::uint32_t>();
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
+    chunk.datasets.push_back(std::move(dataset));
+  }
+  in.finish();
+  return chunk;
+}
+
+void append(TableChunk& chunk, TableChunk& more) {
+  chunk.n_left_out += more.n_left_out;
+  std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
+}
 
 }  // namespace
 
@@ -125,12 +212,12 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
   ReferenceTable table;
   table.key = table_key(source, frame, shape.n_replicates, settings);
   TableStore store(folder, table.key);
-  const RealizationJob job(source, frame, shape.n_replicates, settings);
   table.effects = settings.effects;
   table.profile = profile;
   table.n_realizations = settings.n_realizations;
   for_each_chunk(
-      store, settings.n_realizations, context, [&](std::uint32_t index) { return job.run(index); },
+      store, settings.n_realizations, context,
+      [&](std::uint32_t index) { return simulate_datasets(source, frame, shape.n_replicates, settings, index); },
       [&](TableChunk& chunk) {
         append_statistics(frame, shape, profile, chunk, context.threads, table.statistics);
         for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
@@ -138,32 +225,6 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
       });
   return table;
 }
-
-namespace {
-
-// Structured bindings name every field, so that a new one doesn't compile until it stands here.
-
-void add(Fingerprint& print, const Units& units) {
-  const auto& [trial, n_days, n_rows, of_row, people, names, begins_s] = units;
-  print.add_each(trial, n_days, n_rows, of_row, people, names, begins_s);
-}
-
-void add(Fingerprint& print, const StudyFrame& frame) {
-  const auto& [trials, sensors, counted_phases, window_s, units] = frame;
-  print.add_each(trials, sensors, counted_phases, window_s);
-  add(print, units);
-}
-
-void add(Fingerprint& print, const TableSettings& settings) {
-  const auto& [n_realizations, n_remembered, n_traced, hypotheses] = settings;
-  print.add_each(n_realizations, n_remembered, n_traced, hypotheses);
-  for (const std::string& hypothesis : hypotheses) {  // and what is drawn of them
-    for (const effects::ParameterInfo& parameter : effects::find(hypothesis).info.parameters)
-      print.add_each(parameter.name, parameter.low, parameter.high, parameter.scale);
-  }
-}
-
-}  // namespace
 
 std::string table_key(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
                       const TableSettings& settings) {
@@ -177,156 +238,6 @@ std::string table_key(const RealizationSource& source, const StudyFrame& frame, 
   add(print, frame);
   return print.digest();
 }
-
-}  // namespace pirsim::reconcile
-
-namespace pirsim::stats {
-namespace {
-
-static_assert(std::endian::native == std::endian::little, "the byte order of the format is that of the machine");
-
-}  // namespace
-
-BinaryWriter::BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version) : out_(out) {
-  write(kind);
-  write(version);
-}
-
-void BinaryWriter::put(const void* bytes, std::size_t count) {
-  digest_.add({static_cast<const char*>(bytes), count});
-  out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
-}
-
-void BinaryWriter::write(std::string_view text) {
-  write(static_cast<std::uint64_t>(text.size()));
-  put(text.data(), text.size());
-}
-
-void BinaryWriter::finish() {
-  out_ << digest_.hex();
-  if (!out_) throw Error(ErrorCode::io, "can't write a fitted object: the stream failed");
-}
-
-BinaryReader::BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version) : in_(in), kind_(kind) {
-  const auto length = read<std::uint64_t>();
-  std::string found(length == kind.size() ? kind.size() : 0, '\0');
-  get(found.data(), found.size());
-  if (found != kind) fail("was expected, but the stream holds something else");
-  const auto found_version = read<std::uint32_t>();
-  if (found_version != version)
-    fail("has version " + std::to_string(found_version) + ", this build reads version " + std::to_string(version));
-}
-
-void BinaryReader::get(void* bytes, std::size_t count) {
-  in_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count));
-  if (static_cast<std::size_t>(in_.gcount()) != count) fail("ends too early");
-  digest_.add({static_cast<const char*>(bytes), count});
-}
-
-std::string BinaryReader::read_text() {
-  std::vector<char> text;
-  get_many(text, read<std::uint64_t>());
-  return {text.begin(), text.end()};
-}
-
-void BinaryReader::finish() {
-  const std::string expected = digest_.hex();
-  std::string found(expected.size(), '\0');
-  get(found.data(), found.size());
-  if (found != expected) fail("is damaged: its digest differs");
-}
-
-void BinaryReader::fail(const std::string& what) const { throw Error(ErrorCode::input, kind_ + " " + what); }
-
-}  // namespace pirsim::stats
-
-namespace pirsim::reconcile {
-namespace {
-
-constexpr std::string_view kind = "pirsim reference table";
-constexpr std::uint32_t format = 3;
-constexpr std::uint32_t items_per_chunk = 25;
-
-void write(stats::BinaryWriter& out, const EffectSpec& effect) {
-  out.write(std::string_view(effect.name));
-  out.write(static_cast<std::uint32_t>(effect.parameters.size()));
-  for (const auto& [name, value] : effect.parameters) {
-    out.write(std::string_view(name));
-    out.write(value);
-  }
-  out.write(static_cast<std::uint32_t>(effect.choices.size()));
-  for (const auto& [name, value] : effect.choices) {
-    out.write(std::string_view(name));
-    out.write(std::string_view(value));
-  }
-}
-
-EffectSpec read_effect(stats::BinaryReader& in) {
-  EffectSpec effect;
-  effect.name = in.read_text();
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    const std::string name = in.read_text();
-    effect.parameters[name] = in.read<double>();
-  }
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    const std::string name = in.read_text();
-    effect.choices[name] = in.read_text();
-  }
-  return effect;
-}
-
-/// Eight bits a byte; simulated data know all of them.
-void write(stats::BinaryWriter& out, const Series& run) {
-  out.write(static_cast<std::uint32_t>(run.trial));
-  out.write(static_cast<std::int32_t>(run.replicate));
-  for (const std::size_t n : {run.main_begin, run.main_end, run.bits.size()}) out.write(static_cast<std::uint32_t>(n));
-  std::vector<std::uint8_t> packed((run.bits.size() + 7) / 8, 0);
-  for (std::size_t i = 0; i < run.bits.size(); ++i) {
-    if (run.bits[i] == 1) packed[i / 8] = static_cast<std::uint8_t>(packed[i / 8] | 1U << i % 8);
-  }
-  out.write(packed);
-}
-
-Series read_series(stats::BinaryReader& in) {
-  Series run;
-  run.trial = in.read<std::uint32_t>();
-  run.replicate = in.read<std::int32_t>();
-  run.main_begin = in.read<std::uint32_t>();
-  run.main_end = in.read<std::uint32_t>();
-  const auto n = in.read<std::uint32_t>();
-  const auto packed = in.read_vector<std::uint8_t>();
-  if (packed.size() != (n + 7U) / 8U)
-    throw Error(ErrorCode::input, std::string(kind) + " is damaged: an impossible size");
-  run.bits.reserve(n);
-  for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
-  return run;
-}
-
-TableChunk read_chunk(std::istream& stream, const std::string& key, std::uint32_t number) {
-  stats::BinaryReader in(stream, kind, format);
-  if (in.read_text() != key) throw Error(ErrorCode::input, std::string(kind) + " is of other inputs or settings");
-  if (in.read<std::uint32_t>() != number)
-    throw Error(ErrorCode::input, std::string(kind) + " is of other realizations");
-  TableChunk chunk;
-  chunk.n_left_out = in.read<std::uint32_t>();
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    SimulatedDataset dataset;
-    dataset.row.hypothesis = in.read<std::uint32_t>();
-    dataset.row.realization = in.read<std::uint32_t>();
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
-    chunk.datasets.push_back(std::move(dataset));
-  }
-  in.finish();
-  return chunk;
-}
-
-void append(TableChunk& chunk, TableChunk& more) {
-  chunk.n_left_out += more.n_left_out;
-  std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
-}
-
-}  // namespace
 
 TableStore::TableStore(std::filesystem::path folder, const std::string& key) : folder_(std::move(folder)), key_(key) {
   if (!folder_.empty()) take(io::Journal::read(journal_path()));
@@ -379,7 +290,7 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) {
   if (folder_.empty()) return;
   claim();
   io::AtomicFile file_out(file(number));
-  stats::BinaryWriter out(file_out.stream(), kind, format);
+  BinaryWriter out(file_out.stream(), kind, format);
   out.write(std::string_view(key_));
   out.write(number);
   out.write(chunk.n_left_out);
@@ -433,7 +344,7 @@ void append_statistics(const StudyFrame& frame, const DataShape& shape, const Pr
   ordered_parallel<std::vector<float>>(
       chunk.datasets.size(), threads,
       [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); },
-      [&](std::vector<float>& row) { statistics.append_row(std::span<const float>(row)); });
+      [&](std::vector<float>& row) { statistics.append_row(row); });
 }
 
 }  // namespace pirsim::reconcile

@@ -1,11 +1,13 @@
 // What the model would have measured: many datasets of the plain model and of every effect in the catalogue.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <iosfwd>
+#include <istream>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <span>
 #include <string>
@@ -15,6 +17,7 @@
 
 #include "files/disk/file.hpp"
 #include "model/core/random.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/data/statistics.hpp"
 #include "reconcile/ensemble/realization.hpp"
 #include "stats/matrix.hpp"
@@ -64,11 +67,9 @@ class ReferenceTable {
 [[nodiscard]] std::string table_key(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
                                     const TableSettings& settings);
 
-}  // namespace pirsim::reconcile
-
 // Numbers to a stream of bytes and back, little-endian, with a digest: how fitted objects are kept.
 
-namespace pirsim::stats {
+static_assert(std::endian::native == std::endian::little, "the byte order of the format is that of the machine");
 
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
@@ -76,28 +77,39 @@ concept Number = std::is_arithmetic_v<T>;
 /// Starts with `kind` and a version, ends with the SHA-256 of all bytes between; call finish() last.
 class BinaryWriter {
  public:
-  BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version);
+  BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version) : out_(out) {
+    write(kind);
+    write(version);
+  }
+
   template <Number T>
   void write(T value) {
     put(&value, sizeof value);
   }
+
   template <Number T>
   void write(const std::vector<T>& values) {
     write(static_cast<std::uint64_t>(values.size()));
     put(values.data(), values.size() * sizeof(T));
   }
-  template <Number T>
-  void write(const Matrix<T>& matrix) {
-    write(static_cast<std::uint64_t>(matrix.rows()));
-    write(static_cast<std::uint64_t>(matrix.columns()));
-    put(matrix.values().data(), matrix.values().size() * sizeof(T));
+
+  void write(std::string_view text) {
+    write(static_cast<std::uint64_t>(text.size()));
+    put(text.data(), text.size());
   }
-  void write(std::string_view text);
+
   /// Writes the digest. Throws Error(io) if the stream has failed.
-  void finish();
+  void finish() {
+    out_ << digest_.hex();
+    if (!out_) throw Error(ErrorCode::io, "can't write a fitted object: the stream failed");
+  }
 
  private:
-  void put(const void* bytes, std::size_t count);
+  void put(const void* bytes, std::size_t count) {
+    digest_.add({static_cast<const char*>(bytes), count});
+    out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+  }
+
   std::ostream& out_;
   Sha256 digest_;
 };
@@ -106,32 +118,43 @@ class BinaryWriter {
 class BinaryReader {
  public:
   /// Throws Error(input) if the stream holds something else or another version.
-  BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version);
+  BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version) : in_(in), kind_(kind) {
+    const auto length = read<std::uint64_t>();
+    std::string found(length == kind.size() ? kind.size() : 0, '\0');
+    get(found.data(), found.size());
+    if (found != kind) fail("was expected, but the stream holds something else");
+    const auto found_version = read<std::uint32_t>();
+    if (found_version != version)
+      fail("has version " + std::to_string(found_version) + ", this build reads version " + std::to_string(version));
+  }
+
   template <Number T>
   [[nodiscard]] T read() {
     T value{};
     get(&value, sizeof value);
     return value;
   }
+
   template <Number T>
   [[nodiscard]] std::vector<T> read_vector() {
     std::vector<T> values;
     get_many(values, read<std::uint64_t>());
     return values;
   }
-  template <Number T>
-  [[nodiscard]] Matrix<T> read_matrix() {
-    const auto rows = read<std::uint64_t>(), columns = read<std::uint64_t>();
-    if (columns != 0 && rows > largest_count / columns) fail("is damaged: an impossible size");
-    std::vector<T> values;
-    get_many(values, rows * columns);
-    Matrix<T> matrix(rows, columns);
-    std::copy(values.begin(), values.end(), matrix.values().begin());
-    return matrix;
+
+  [[nodiscard]] std::string read_text() {
+    std::vector<char> text;
+    get_many(text, read<std::uint64_t>());
+    return {text.begin(), text.end()};
   }
-  [[nodiscard]] std::string read_text();
+
   /// Compares the digest; throws Error(input) if it differs.
-  void finish();
+  void finish() {
+    const std::string expected = digest_.hex();
+    std::string found(expected.size(), '\0');
+    get(found.data(), found.size());
+    if (found != expected) fail("is damaged: its digest differs");
+  }
 
  private:
   static constexpr std::uint64_t largest_count = 1ULL << 36U;
@@ -145,19 +168,21 @@ class BinaryReader {
       get(values.data() + from, more * sizeof(T));
     }
   }
-  void get(void* bytes, std::size_t count);
-  [[noreturn]] void fail(const std::string& what) const;
+
+  void get(void* bytes, std::size_t count) {
+    in_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count));
+    if (static_cast<std::size_t>(in_.gcount()) != count) fail("ends too early");
+    digest_.add({static_cast<const char*>(bytes), count});
+  }
+
+  void fail(const std::string& what) const { throw Error(ErrorCode::input, kind_ + " " + what); }
   std::istream& in_;
   std::string kind_;
   Sha256 digest_;
 };
 
-}  // namespace pirsim::stats
-
 // Simulated datasets on disk: a folder with chunks of finished realizations, each of which names its key and number,
 // and a journal of them. Private to reconcile.
-
-namespace pirsim::reconcile {
 
 /// The runs of one dataset as they were simulated: statistics are taken when they are needed, so that data with other
 /// gaps, and other statistics, need no new simulation.

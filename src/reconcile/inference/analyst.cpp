@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/effects/catalogue.hpp"
+#include "model/core/text.hpp"
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
@@ -77,15 +78,36 @@ bool counts_in_doubt(std::span<const Candidate> candidates, double alpha) {
 }
 
 Reason reason_of(const HypothesisScore& score, bool kept, double alpha) {
-  if (kept && score.p <= alpha) return reason::Sure{score.p, score.probability};
-  if (kept) return reason::NotRuledOut{score.p};
-  if (score.p > alpha) return reason::Improbable{score.p};
-  if (score.p == 0.0) return reason::HardlySimulated{};
-  reason::RuledOut by;
-  by.least_p = 0.5 * score.least_p;
-  if (2.0 * score.p_relative <= alpha) by.p_relative = score.p_relative;
-  if (2.0 * score.p_absolute <= alpha) by.p_absolute = score.p_absolute;
-  return by;
+  const auto p = [](double value, double least = 0.0) { return "(" + p_in_words(value, least) + ")"; };
+  if (kept && score.p <= alpha)
+    return {"Kept, though simulations with it seldom look like these data " + p(score.p),
+            "with probability " + short_number(score.probability) + " it is this one of those looked for, if any."};
+  if (kept)
+    return {"Kept", "it can have made these data " + p(score.p) +
+                        ", and no other effect explains them so much better that it can be ruled out."};
+  if (score.p > alpha)
+    return {"Dropped", "by itself it might have made these data " + p(score.p) +
+                           ", but all that isn't ruled out is improbable together."};
+  if (score.p == 0.0) return {"Dropped", "it could hardly be simulated in this room.", Reason::What::hardly_simulated};
+  const double least = 0.5 * score.least_p;
+  std::vector<std::string> by;
+  if (2.0 * score.p_relative <= alpha)
+    by.push_back("another explains the data better than is usual for its own " + p(score.p_relative, least));
+  if (2.0 * score.p_absolute <= alpha)
+    by.push_back("simulations with it hardly ever look like these data " + p(score.p_absolute, least));
+  return {"Dropped", joined(by, "; and ") + "."};
+}
+
+Reason like_impostors(const HypothesisScore& score) {
+  return {"Dropped",
+          "other things that are taken for it make such data more often than it does itself (" +
+              p_in_words(score.p_own) + ").",
+          Reason::What::like_impostors};
+}
+
+Reason less_likely(const HypothesisScore& score, const HypothesisScore& named) {
+  return {"", "Not ruled out (" + p_in_words(score.p) + "), but much less likely than " + named.hypothesis + " (" +
+                  short_number(score.probability) + " against " + short_number(named.probability) + ")."};
 }
 
 FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
@@ -111,15 +133,8 @@ Analyst::Analyst(std::shared_ptr<const TableView> view, const ClassifierSettings
       settings_(settings),
       context_(context),
       classifier_(*view_, settings, context),
-      fitter_(view_->scene(), view_->table(), view_->map(), classifier_.seen_rows(), context, settings.left_out) {}
-
-FittedEffect Analyst::fit(std::size_t hypothesis, std::span<const float> measured) const {
-  return fitter_.fit(hypothesis, measured);
-}
-
-std::size_t Analyst::likeliest(std::span<const float> measured, const std::function<bool(std::size_t)>& wanted) const {
-  return likeliest_hypothesis(classifier_.probabilities(measured), wanted);
-}
+      fitter_(view_->study().source.scene, view_->table(), view_->map(), classifier_.seen_rows(), context,
+              settings.left_out) {}
 
 Judgement Analyst::judge(std::span<const float> measured) const {
   Judgement judgement;
@@ -132,8 +147,8 @@ Judgement Analyst::judge(std::span<const float> measured) const {
 
 Outcome agreement(const TableView& view, std::span<const float> measured, double alpha, const Context& context) {
   Outcome outcome;
-  outcome.location = locate(view.frame(), view.map(), view.plain(), measured, alpha, context);
-  outcome.trail.emplace_back(trail::Tested{outcome.location.p, outcome.location.least_p()});
+  outcome.location = locate(view.study().frame, view.map(), view.plain(), measured, alpha, context);
+  outcome.trail.push_back("global test: " + p_in_words(outcome.location.p, outcome.location.least_p()));
   return outcome;
 }
 
@@ -152,10 +167,9 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     candidate.kept = std::ranges::find(kept, hypothesis) != kept.end();
     candidate.reason = reason_of(score, candidate.kept, settings_.alpha);
     if (likeness == hypothesis) {
-      candidate.reason = reason::LikeImpostors{score.p_own};
+      candidate.reason = like_impostors(score);
     } else if (likeness && score.p > settings_.alpha) {
-      const HypothesisScore& alike = judgement.scores[*likeness];
-      candidate.reason = reason::LessLikely{score.p, score.probability, alike.hypothesis, alike.probability};
+      candidate.reason = less_likely(score, judgement.scores[*likeness]);
     }
     outcome.candidates.push_back(std::move(candidate));
   }
@@ -165,12 +179,12 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     return a.score.probability > b.score.probability;
   });
   outcome.telling_features = classifier_.telling_features(8);
-  trail::NotRuledOut left;
-  if (outcome.nothing.p > settings_.alpha) left.hypotheses.push_back(outcome.nothing.hypothesis);
+  std::vector<std::string> left;
+  if (outcome.nothing.p > settings_.alpha) left.push_back(outcome.nothing.hypothesis);
   for (const Candidate& candidate : outcome.candidates) {
-    if (candidate.kept) left.hypotheses.push_back(candidate.score.hypothesis);
+    if (candidate.kept) left.push_back(candidate.score.hypothesis);
   }
-  outcome.trail.emplace_back(std::move(left));
+  outcome.trail.push_back("hypotheses that can have made the data: " + (left.empty() ? "none" : joined(left, " ")));
   fit_named(outcome, measured);
   return outcome;
 }
@@ -180,10 +194,10 @@ void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const
   if (outcome.verdict == Verdict::named) {
     Candidate& candidate = outcome.candidates.front();
     FittedEffect fitted = fit(hypothesis_of(view_->table(), candidate.score.hypothesis), measured);
-    if (fitted.includes_off) outcome.trail.emplace_back(trail::IncludesOff{candidate.score.hypothesis});
+    if (fitted.includes_off) outcome.trail.push_back("the interval of " + fitted.effect.name + " includes off");
     if (takes_back(fitted, outcome.location.p)) {
-      outcome.trail.emplace_back(trail::Remark::may_be_none);
-      candidate.reason = reason::MayBeNone{};
+      outcome.trail.emplace_back("the name is taken back");
+      candidate.reason = {"Kept, but not named", "its strength may as well be none."};
       outcome.verdict = Verdict::one_of;
     } else {
       outcome.fits.push_back(std::move(fitted));
@@ -194,9 +208,7 @@ void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const
     if (outcome.verdict != Verdict::named || outcome.named.empty()) {
       outcome.named.push_back(candidate.score.hypothesis);
     } else {
-      const HypothesisScore& named = outcome.candidates.front().score;
-      candidate.reason =
-          reason::LessLikely{candidate.score.p, candidate.score.probability, named.hypothesis, named.probability};
+      candidate.reason = less_likely(candidate.score, outcome.candidates.front().score);
     }
   }
 }

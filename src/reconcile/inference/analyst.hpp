@@ -69,6 +69,10 @@ struct Decision {
 
 /// Why a hypothesis is kept or dropped, looked at by itself.
 [[nodiscard]] Reason reason_of(const HypothesisScore& score, bool kept, double alpha);
+/// Of the hypothesis that would have been named.
+[[nodiscard]] Reason like_impostors(const HypothesisScore& score);
+/// Not ruled out, but another is named.
+[[nodiscard]] Reason less_likely(const HypothesisScore& score, const HypothesisScore& named);
 /// The likeliest family. scores: (n_hypotheses) nothing first.
 [[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
 /// The hypothesis of the greatest probability (at least 1) for which `wanted` holds; 0 if there is none above 0.
@@ -101,8 +105,12 @@ class Analyst {
   /// The hypothesis that fits best (at least 1), whatever the tests say, among those for which `wanted` holds; 0 if
   /// none.
   [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
-                                      const std::function<bool(std::size_t)>& wanted) const;
-  [[nodiscard]] FittedEffect fit(std::size_t hypothesis, std::span<const float> measured) const;
+                                      const std::function<bool(std::size_t)>& wanted) const {
+    return likeliest_hypothesis(classifier_.probabilities(measured), wanted);
+  }
+  [[nodiscard]] FittedEffect fit(std::size_t hypothesis, std::span<const float> measured) const {
+    return fitter_.fit(hypothesis, measured);
+  }
   /// A name is taken back if the effect's strength may as well be none; unless the global test, whose p is given,
   /// refuses the plain model at a fifth of the level: then it isn't none, but poorly known.
   [[nodiscard]] bool takes_back(const FittedEffect& fitted, double p) const noexcept {

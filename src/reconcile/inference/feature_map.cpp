@@ -38,12 +38,37 @@ void for_each_cell(const StudyFrame& frame, const Visit& visit) {
   }
 }
 
+FeatureName mean_of(const std::string& statistic) { return {"mean " + statistic, statistic, "all cells, mean"}; }
+FeatureName size_of(const std::string& statistic) {
+  return {"size of " + statistic, statistic, "all cells, mean size of the differences"};
+}
+FeatureName of_sensor(const std::string& sensor, const std::string& statistic) {
+  return {sensor + " " + statistic, statistic, sensor};
+}
+
+constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - told_of_cells.size();
+constexpr std::size_t n_slices = n_trial_statistics - told_of_trials.size();
+/// Statistics whose means over the sensors of a trial are looked at one by one.
+constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
+                                   CellStatistic::onsets,        CellStatistic::isolated,
+                                   CellStatistic::again_after_1, CellStatistic::agreement,
+                                   CellStatistic::lead_seconds,  CellStatistic::tail_seconds};
+/// Statistics by whose means the sensors are put in order.
+constexpr std::array told_in_order{CellStatistic::seconds,      CellStatistic::silent_seconds,
+                                   CellStatistic::onsets,       CellStatistic::again_after_1,
+                                   CellStatistic::period_power, CellStatistic::half_difference};
+
+template <typename Statistic>
+Statistic nth_after(Statistic first, std::size_t n) {
+  return static_cast<Statistic>(static_cast<std::size_t>(first) + n);
+}
+
 }  // namespace
 
 std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSpec& script) {
   std::vector<CellKnowledge> cells;
   const StudyFrame frame = frame_of(scene, script);
-  if (!frame.units.empty()) return std::vector<CellKnowledge>(frame.n_cells());  // nobody knows who sits where
+  if (!frame.day_parts.empty()) return std::vector<CellKnowledge>(frame.n_cells());  // nobody knows who sits where
   for (const TrialSpec& trial : script.trials) {
     const action::Sit* sit = first<action::Sit>(trial);
     const auto seat = sit == nullptr ? scene.seats.end() : std::ranges::find(scene.seats, sit->seat, &SeatSpec::id);
@@ -178,72 +203,45 @@ stats::Matrix<float> FeatureMap::features(const stats::Matrix<float>& statistics
 
 // The features of a dataset, block by block.
 
-namespace {
-
-using FeatureKind = FeatureName::Kind;
-
-FeatureName of_statistic(FeatureKind kind, const std::string& statistic) {
-  return {.kind = kind, .statistic = statistic};
-}
-FeatureName gained_by(FeatureName::Permutation permutation) {
-  return {.kind = FeatureKind::likeness_gained, .permutation = permutation};
-}
-
-constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - told_of_cells.size();
-constexpr std::size_t n_slices = n_trial_statistics - told_of_trials.size();
-/// Statistics whose means over the sensors of a trial are looked at one by one.
-constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
-                                   CellStatistic::onsets,        CellStatistic::isolated,
-                                   CellStatistic::again_after_1, CellStatistic::agreement,
-                                   CellStatistic::lead_seconds,  CellStatistic::tail_seconds};
-/// Statistics by whose means the sensors are put in order.
-constexpr std::array told_in_order{CellStatistic::seconds,      CellStatistic::silent_seconds,
-                                   CellStatistic::onsets,       CellStatistic::again_after_1,
-                                   CellStatistic::period_power, CellStatistic::half_difference};
-
-template <typename Statistic>
-Statistic nth_after(Statistic first, std::size_t n) {
-  return static_cast<Statistic>(static_cast<std::size_t>(first) + n);
-}
-
-}  // namespace
-
 void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       if (!known(trial, sensor, CellStatistic::seconds)) continue;
       out.test_next();
       out.add(data.cell(trial, sensor, CellStatistic::seconds), [&] {
-        return FeatureName{FeatureKind::cell, frame_.trials[trial], frame_.sensors[sensor],
-                           name(CellStatistic::seconds)};
+        return of_sensor(frame_.trials[trial] + " " + frame_.sensors[sensor], name(CellStatistic::seconds));
       });
     }
   }
+}
+
+std::pair<double, double> FeatureMap::sum_over_trials(const Scaled& data, std::size_t sensor,
+                                                      CellStatistic statistic) const {
+  double sum = 0.0, count = 0.0;
+  for (const std::size_t trial : trials_) {
+    if (!known(trial, sensor, statistic)) continue;
+    sum += data.cell(trial, sensor, statistic);
+    count += 1.0;
+  }
+  return {sum, count};
 }
 
 void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
   for (const CellStatistic statistic : told_of_cells) {
     std::vector<double> means;
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      double sum = 0.0, count = 0.0;
-      for (const std::size_t trial : trials_) {
-        if (!known(trial, sensor, statistic)) continue;
-        sum += data.cell(trial, sensor, statistic);
-        count += 1.0;
-      }
+      const auto [sum, count] = sum_over_trials(data, sensor, statistic);
       if (count == 0.0) continue;
       means.push_back(sum / count);
       out.test_next();
-      out.add(means.back(), [&] {
-        return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(statistic)};
-      });
+      out.add(means.back(), [&] { return of_sensor(frame_.sensors[sensor], name(statistic)); });
     }
     if (std::ranges::find(told_in_order, statistic) == told_in_order.end() || means.size() < 3) continue;
     std::ranges::sort(means);
     out.add(means[means.size() - 1] - means[means.size() - 2],
-            [&] { return of_statistic(FeatureKind::first_less_second, name(statistic)); });
-    out.add(means[1] - means[0], [&] { return of_statistic(FeatureKind::last_but_one_less_last, name(statistic)); });
-    out.add(means.back() - means.front(), [&] { return of_statistic(FeatureKind::first_less_last, name(statistic)); });
+            [&] { return FeatureName{"first less second sensor: " + name(statistic)}; });
+    out.add(means[1] - means[0], [&] { return FeatureName{"last but one less last sensor: " + name(statistic)}; });
+    out.add(means.back() - means.front(), [&] { return FeatureName{"first less last sensor: " + name(statistic)}; });
   }
 }
 
@@ -257,9 +255,7 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
         count += 1.0;
       }
       if (count == 0.0) continue;
-      out.add(sum / count, [&] {
-        return FeatureName{.kind = FeatureKind::trial, .trial = frame_.trials[trial], .statistic = name(statistic)};
-      });
+      out.add(sum / count, [&] { return FeatureName{frame_.trials[trial] + " " + name(statistic)}; });
     }
   }
   for (const TrialStatistic statistic : told_of_trials) {
@@ -272,8 +268,8 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       count += 1.0;
     }
     if (count == 0.0) continue;
-    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
-    out.add(std::sqrt(squares / count), [&] { return of_statistic(FeatureKind::size, name(statistic)); });
+    out.add(sum / count, [&] { return mean_of(name(statistic)); });
+    out.add(std::sqrt(squares / count), [&] { return size_of(name(statistic)); });
   }
   write_shifts(data, out);
 }
@@ -283,20 +279,13 @@ void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
   const std::string statistic = name(CellStatistic::shift_s);
   double all = 0.0, n_all = 0.0;
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-    double sum = 0.0, count = 0.0;
-    for (const std::size_t trial : trials_) {
-      if (!known(trial, sensor, CellStatistic::shift_s)) continue;
-      sum += data.cell(trial, sensor, CellStatistic::shift_s);
-      count += 1.0;
-    }
+    const auto [sum, count] = sum_over_trials(data, sensor, CellStatistic::shift_s);
     if (count == 0.0) continue;
-    out.add(sum / count, [&] {
-      return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = statistic};
-    });
+    out.add(sum / count, [&] { return of_sensor(frame_.sensors[sensor], statistic); });
     all += sum;
     n_all += count;
   }
-  if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(FeatureKind::mean, statistic); });
+  if (n_all > 0.0) out.add(all / n_all, [&] { return mean_of(statistic); });
 }
 
 /// Sum of a statistic, of(data, trial), over the trials in which it is known; none if there are no such trials. What a
@@ -314,7 +303,7 @@ std::optional<double> FeatureMap::total(const DatasetStatistics& data, const Of&
 
 /// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
 void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
-  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& sensor) {
+  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& owner) {
     std::vector<double> totals;
     for (std::size_t k = 0; k < n; ++k) {
       const std::optional<double> seconds = part(k);
@@ -325,7 +314,8 @@ void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
     for (std::size_t k = 0; k < n; ++k) {
       out.test_next();
       out.add(std::log((totals[k] + 1.0) / all), [&] {
-        return FeatureName{.kind = FeatureKind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n};
+        return FeatureName{owner + ", part " + std::to_string(k + 1) + " of " + std::to_string(n) + " of the time",
+                           "share_of_time"};
       });
     }
   };
@@ -336,7 +326,7 @@ void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
           return all.trial(trial, nth_after(TrialStatistic::slice_1, k));
         });
       },
-      "");
+      "all sensors");
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
     write_shares(
         n_sixths,
@@ -363,14 +353,13 @@ void FeatureMap::write_pairs(const DatasetStatistics& data, Writer& out) const {
       odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
       out.test_next();
       out.add(odds.back(), [&] {
-        return FeatureName{
-            .kind = FeatureKind::together, .sensor = frame_.sensors[first], .other = frame_.sensors[second]};
+        return FeatureName{frame_.sensors[first] + " while " + frame_.sensors[second] + " moves", "together"};
       });
     }
   }
   if (odds.empty()) return;
-  out.add(*std::ranges::max_element(odds), [] { return FeatureName{FeatureKind::most_together}; });
-  out.add(*std::ranges::min_element(odds), [] { return FeatureName{FeatureKind::least_together}; });
+  out.add(*std::ranges::max_element(odds), [] { return FeatureName{"most together"}; });
+  out.add(*std::ranges::min_element(odds), [] { return FeatureName{"least together"}; });
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
@@ -391,15 +380,14 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
     }
     if (count == 0.0) continue;
     out.test_next();
-    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
+    out.add(sum / count, [&] { return mean_of(name(statistic)); });
     out.test_next();
-    out.add(size / count, [&] { return of_statistic(FeatureKind::size, name(statistic)); });
-    out.add(greatest, [&] { return of_statistic(FeatureKind::greatest, name(statistic)); });
-    out.add(least, [&] { return of_statistic(FeatureKind::least, name(statistic)); });
+    out.add(size / count, [&] { return size_of(name(statistic)); });
+    out.add(greatest, [&] { return FeatureName{"greatest " + name(statistic)}; });
+    out.add(least, [&] { return FeatureName{"least " + name(statistic)}; });
     for (std::size_t c = 0; c < slopes.size(); ++c) {
-      out.add(slopes[c] / count, [&] {
-        return FeatureName{.kind = FeatureKind::slope, .statistic = name(statistic), .other = covariate_names_[c]};
-      });
+      out.add(slopes[c] / count,
+              [&] { return FeatureName{"slope on " + covariate_names_[c] + " of " + name(statistic)}; });
     }
   }
 }
@@ -427,13 +415,14 @@ void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) 
       if (!std::isnan(seconds)) values[frame_.cell(trial, sensor)] = std::log1p(seconds);
     }
   }
-  std::vector<std::size_t> trials(n_trials), sensors(n_sensors);
-  std::iota(trials.begin(), trials.end(), std::size_t{0});
-  std::iota(sensors.begin(), sensors.end(), std::size_t{0});
+  std::vector<std::size_t> trials = stats::numbers_to(n_trials), sensors = stats::numbers_to(n_sensors);
   const double as_it_is = likeness(values, trials, sensors);
-  out.add(as_it_is, [] { return FeatureName{FeatureKind::likeness}; });
-  const auto add = [&](const auto& trial_order, const auto& sensor_order, FeatureName::Permutation permutation) {
-    out.add(likeness(values, trial_order, sensor_order) - as_it_is, [&] { return gained_by(permutation); });
+  out.add(as_it_is, [] { return FeatureName{"likeness"}; });
+  const auto gained = [&](double more, const char* by) {
+    out.add(more, [&] { return FeatureName{std::string("likeness gained by ") + by}; });
+  };
+  const auto add = [&](const auto& trial_order, const auto& sensor_order, const char* by) {
+    gained(likeness(values, trial_order, sensor_order) - as_it_is, by);
   };
   const auto rotated = [](std::vector<std::size_t> order, std::ptrdiff_t by) {
     std::rotate(order.begin(), order.begin() + (by > 0 ? by : static_cast<std::ptrdiff_t>(order.size()) + by),
@@ -452,18 +441,18 @@ void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) 
     return best - as_it_is;
   };
   if (n_trials > 1) {
-    add(rotated(trials, 1), sensors, FeatureName::Permutation::trials_shifted);
-    add(rotated(trials, -1), sensors, FeatureName::Permutation::trials_shifted_back);
-    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, FeatureName::Permutation::trials_reversed);
-    out.add(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
-            [] { return gained_by(FeatureName::Permutation::two_trials_swapped); });
+    add(rotated(trials, 1), sensors, "trials shifted by one");
+    add(rotated(trials, -1), sensors, "trials shifted back by one");
+    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, "trials in reverse");
+    gained(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
+           "two trials swapped");
   }
   if (n_sensors > 1) {
-    add(trials, rotated(sensors, 1), FeatureName::Permutation::sensors_shifted);
-    add(trials, rotated(sensors, -1), FeatureName::Permutation::sensors_shifted_back);
-    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), FeatureName::Permutation::sensors_reversed);
-    out.add(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
-            [] { return gained_by(FeatureName::Permutation::two_sensors_swapped); });
+    add(trials, rotated(sensors, 1), "sensors shifted by one");
+    add(trials, rotated(sensors, -1), "sensors shifted back by one");
+    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), "sensors in reverse");
+    gained(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
+           "two sensors swapped");
   }
 }
 

@@ -14,9 +14,155 @@
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
+namespace {
 
 using effects::ParameterInfo;
+using effects::Role;
 using effects::Scale;
+
+constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no difference
+constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the hypotheses best
+
+/// What isn't a matter of more or less: choices, and for each strength on which side of `off` it lies.
+using ChoicesAndSides = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
+
+ChoicesAndSides kind_of(const EffectSpec& effect) {
+  ChoicesAndSides kind{effect.choices, {}};
+  for (const ParameterInfo& info : effects::find(effect.name).info.parameters) {
+    if (info.role != Role::strength || !effects::applies(info, effect)) continue;
+    const double value = effect.parameters.at(info.name);
+    kind.second.push_back(value > info.off ? 1 : value < info.off ? -1 : 0);
+  }
+  return kind;
+}
+
+double strength_of(const EffectSpec& effect) {
+  const ParameterInfo& strength = effects::strength_parameter(effect);
+  return to_flat(strength, effect.parameters.at(strength.name));
+}
+
+constexpr std::size_t fewest_training = 20;  ///< datasets of a hypothesis: fewer have no shape
+constexpr std::size_t fewest_calibration = 10;
+constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
+
+/// Its parameters are fitted from these, each once more without one of them (stats::abc_posterior).
+std::size_t fewest_to_fit(const ReferenceTable& table, std::size_t hypothesis) {
+  if (hypothesis == 0) return 0;
+  return 2 * effects::find(table.hypothesis_name(hypothesis)).info.parameters.size() + 3;
+}
+
+/// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
+/// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
+std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
+  std::vector<std::pair<double, std::size_t>> by_p;
+  for (const std::size_t row : rows) by_p.emplace_back(view.p_of_row(row), row);
+  std::ranges::sort(by_p);
+  const auto fewest = static_cast<std::size_t>(3.0 / alpha);
+  const auto n_seen =
+      static_cast<std::size_t>(std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= alpha; }));
+  by_p.resize(std::min(by_p.size(), std::max(n_seen, fewest)));
+  rows.clear();
+  for (const auto& [p, row] : by_p) rows.push_back(row);
+  std::ranges::sort(rows);
+  return rows;
+}
+
+constexpr std::size_t fewest_own = 20;  ///< assumed: an estimate learnt from fewer datasets is worse than one from all
+
+stats::Matrix<double> in_double(const stats::Matrix<float>& narrow) {
+  stats::Matrix<double> wide(narrow.rows(), narrow.columns());
+  std::ranges::copy(narrow.values(), wide.values().begin());
+  return wide;
+}
+
+std::vector<const EffectSpec*> drawn_in(const ReferenceTable& table, std::span<const std::size_t> rows) {
+  std::vector<const EffectSpec*> drawn;
+  for (const std::size_t row : rows) drawn.push_back(&table.rows[row].effects.front());
+  return drawn;
+}
+
+/// Of one that doesn't apply: what is usual.
+double flat_value(const ParameterInfo& info, const EffectSpec& drawn) {
+  const auto value = drawn.parameters.find(info.name);
+  return to_flat(info, value == drawn.parameters.end() ? info.typical : value->second);
+}
+
+/// (n x n_parameters) flat
+stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
+                                    const std::vector<const ParameterInfo*>& infos) {
+  stats::Matrix<double> parameters(drawn.size(), infos.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    for (std::size_t p = 0; p < infos.size(); ++p) parameters(i, p) = flat_value(*infos[p], *drawn[i]);
+  }
+  return parameters;
+}
+
+constexpr double confidence = 0.9;
+constexpr double accepted_share = 0.3;
+constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
+constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
+
+/// The posterior at an estimate, from these held-back datasets.
+stats::AbcPosterior posterior_of(const PointEstimator& estimator, std::span<const double> estimate,
+                                 const std::vector<std::size_t>& rows) {
+  const auto n = static_cast<double>(rows.size());
+  const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
+  return stats::abc_posterior(estimator.parameters().select_rows(rows), estimator.estimates().select_rows(rows),
+                              estimate, {share, estimator.bounds()});
+}
+
+/// Those of these datasets whose estimates lie nearest to the measured one, by the estimates' own scatter.
+std::vector<std::size_t> nearest_of(const PointEstimator& estimator, std::span<const double> estimate,
+                                    const std::vector<std::size_t>& rows) {
+  const stats::Matrix<double> estimates = estimator.estimates().select_rows(rows);
+  std::vector<std::pair<double, std::size_t>> near(rows.size());
+  for (std::size_t i = 0; i < near.size(); ++i) near[i].second = rows[i];
+  for (std::size_t p = 0; p < estimate.size(); ++p) {
+    const std::vector<double> values = estimates.column(p);
+    const double scatter = stats::quantile(values, 0.84) - stats::quantile(values, 0.16) + 1e-12;
+    for (std::size_t i = 0; i < near.size(); ++i)
+      near[i].first += std::pow((estimates(i, p) - estimate[p]) / scatter, 2);
+  }
+  std::ranges::sort(near);
+  near.resize(std::min(near.size(), std::max(fewest_neighbours, near.size() / 4)));
+  std::vector<std::size_t> nearest;
+  for (const auto& [distance, row] : near) nearest.push_back(row);
+  return nearest;
+}
+
+std::vector<std::size_t> without(std::vector<std::size_t> rows, std::size_t row) {
+  std::erase(rows, row);
+  return rows;
+}
+
+/// How far beyond its interval's ends, as a share of the way from the median, a known truth lies.
+double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double truth) {
+  const Interval interval = posterior.interval(parameter, confidence);
+  const double median = posterior.quantile(parameter, 0.5);
+  const double half = truth < median ? median - interval.low : interval.high - median;
+  return std::abs(truth - median) / std::max(half, 1e-12);
+}
+
+/// (n_parameters) By how much intervals must be stretched about their medians so that of these datasets near the
+/// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
+std::vector<double> widening_of(const PointEstimator& estimator, std::span<const double> estimate,
+                                const std::vector<std::size_t>& rows) {
+  const std::size_t n = estimator.infos().size();
+  std::vector<std::vector<double>> reaches(n);
+  for (const std::size_t row : nearest_of(estimator, estimate, rows)) {
+    const stats::AbcPosterior own = posterior_of(estimator, estimator.estimates().row(row), without(rows, row));
+    for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, estimator.parameters()(row, p)));
+  }
+  std::vector<double> widening;
+  for (std::vector<double>& values : reaches) {
+    std::ranges::sort(values);
+    const auto rank = static_cast<std::size_t>(std::ceil(confidence * static_cast<double>(values.size() + 1)));
+    widening.push_back(values[std::min(rank, values.size()) - 1]);
+  }
+  return widening;
+}
+
+}  // namespace
 
 double to_flat(const ParameterInfo& info, double value) {
   const double within = std::clamp(value, info.low, info.high);
@@ -28,31 +174,6 @@ double from_flat(const ParameterInfo& info, double value) {
   const double rounded = info.scale == Scale::whole ? std::round(natural) : natural;
   return std::clamp(rounded, info.least, info.most);
 }
-
-namespace {
-
-constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no difference
-constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the hypotheses best
-
-/// What isn't a matter of more or less: choices, and for each strength on which side of `off` it lies.
-using ChoicesAndSides = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
-
-ChoicesAndSides kind_of(const EffectSpec& effect) {
-  ChoicesAndSides kind{effect.choices, {}};
-  for (const effects::ParameterInfo& info : effects::find(effect.name).info.parameters) {
-    if (info.role != effects::Role::strength || !effects::applies(info, effect)) continue;
-    const double value = effect.parameters.at(info.name);
-    kind.second.push_back(value > info.off ? 1 : value < info.off ? -1 : 0);
-  }
-  return kind;
-}
-
-double strength_of(const EffectSpec& effect) {
-  const effects::ParameterInfo& strength = effects::strength_parameter(effect);
-  return to_flat(strength, effect.parameters.at(strength.name));
-}
-
-}  // namespace
 
 std::vector<int> number_alike(const ReferenceTable& table, std::span<const std::size_t> rows, std::size_t fewest) {
   if (rows.empty() || table.rows[rows.front()].hypothesis == 0) return std::vector<int>(rows.size(), 0);
@@ -108,36 +229,6 @@ std::vector<KindFinder::Share> KindFinder::shares(std::span<const float> feature
   return shares;
 }
 
-namespace {
-
-constexpr std::size_t fewest_training = 20;  ///< datasets of a hypothesis: fewer have no shape
-constexpr std::size_t fewest_calibration = 10;
-constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
-
-/// Its parameters are fitted from these, each once more without one of them (stats::abc_posterior).
-std::size_t fewest_to_fit(const ReferenceTable& table, std::size_t hypothesis) {
-  if (hypothesis == 0) return 0;
-  return 2 * effects::find(table.hypothesis_name(hypothesis)).info.parameters.size() + 3;
-}
-
-/// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
-/// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
-std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
-  std::vector<std::pair<double, std::size_t>> by_p;
-  for (const std::size_t row : rows) by_p.emplace_back(view.p_of_row(row), row);
-  std::ranges::sort(by_p);
-  const auto fewest = static_cast<std::size_t>(3.0 / alpha);
-  const auto n_seen =
-      static_cast<std::size_t>(std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= alpha; }));
-  by_p.resize(std::min(by_p.size(), std::max(n_seen, fewest)));
-  rows.clear();
-  for (const auto& [p, row] : by_p) rows.push_back(row);
-  std::ranges::sort(rows);
-  return rows;
-}
-
-}  // namespace
-
 std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
                                     const std::string& left_out) {
   std::erase_if(rows, [&](std::size_t row) {
@@ -148,9 +239,10 @@ std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std
 
 SeenRows seen_rows(const TableView& view, double alpha, const std::string& left_out) {
   const ReferenceTable& table = view.table();
-  SeenRows seen{rows_of(table, 0, Part::calibration)};
+  SeenRows seen{rows_of(table, 0, Subset::calibration)};
   for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
-    seen.push_back(rows_seen(view, still_made(table, rows_of(table, hypothesis, Part::calibration), left_out), alpha));
+    seen.push_back(
+        rows_seen(view, still_made(table, rows_of(table, hypothesis, Subset::calibration), left_out), alpha));
   return seen;
 }
 
@@ -168,8 +260,8 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, co
   int n_kinds = 0;
   for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
     if (table.hypothesis_name(hypothesis) == left_out) continue;
-    const std::vector<std::size_t> training = still_made(table, rows_of(table, hypothesis, Part::training), left_out);
-    const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
+    const std::vector<std::size_t> training = still_made(table, rows_of(table, hypothesis, Subset::training), left_out);
+    const std::size_t n_calibration = rows_of(table, hypothesis, Subset::calibration).size();
     if (training.size() < fewest_training ||
         n_calibration < std::max(fewest_calibration, fewest_to_fit(table, hypothesis))) {
       if (hypothesis > 0) continue;
@@ -254,51 +346,13 @@ std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> 
 }
 
 std::vector<FeatureName> HypothesisClassifier::telling_features(std::size_t n) const {
-  std::vector<std::size_t> order(map_->names().size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = stats::numbers_to(map_->names().size());
   const std::vector<double>& importance = classifier_.pooled().trees().importance();
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return importance[a] > importance[b]; });
   std::vector<FeatureName> names;
   for (std::size_t i = 0; i < std::min(n, order.size()); ++i) names.push_back(map_->names()[order[i]]);
   return names;
 }
-
-namespace {
-
-using effects::ParameterInfo;
-using effects::Role;
-
-constexpr std::size_t fewest_own = 20;  ///< assumed: an estimate learnt from fewer datasets is worse than one from all
-
-stats::Matrix<double> in_double(const stats::Matrix<float>& narrow) {
-  stats::Matrix<double> wide(narrow.rows(), narrow.columns());
-  std::ranges::copy(narrow.values(), wide.values().begin());
-  return wide;
-}
-
-std::vector<const EffectSpec*> drawn_in(const ReferenceTable& table, std::span<const std::size_t> rows) {
-  std::vector<const EffectSpec*> drawn;
-  for (const std::size_t row : rows) drawn.push_back(&table.rows[row].effects.front());
-  return drawn;
-}
-
-/// Of one that doesn't apply: what is usual.
-double flat_value(const ParameterInfo& info, const EffectSpec& drawn) {
-  const auto value = drawn.parameters.find(info.name);
-  return to_flat(info, value == drawn.parameters.end() ? info.typical : value->second);
-}
-
-/// (n x n_parameters) flat
-stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
-                                    const std::vector<const ParameterInfo*>& infos) {
-  stats::Matrix<double> parameters(drawn.size(), infos.size());
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    for (std::size_t p = 0; p < infos.size(); ++p) parameters(i, p) = flat_value(*infos[p], *drawn[i]);
-  }
-  return parameters;
-}
-
-}  // namespace
 
 PointEstimator::PointEstimator(const ReferenceTable& table, std::size_t hypothesis, const HypothesisDatasets& training,
                                const HypothesisDatasets& held_back)
@@ -327,8 +381,7 @@ PointEstimator::PointEstimator(const ReferenceTable& table, std::size_t hypothes
   from_all_ = stats::ParameterEstimator::fit(features, targets);
   held_back_ = drawn_in(table, held_back.rows);
   parameters_ = parameters_of(held_back_, infos_);
-  for (std::size_t i = 0; i < held_back.rows.size(); ++i)
-    estimates_.append_row(std::span<const double>(of(held_back.features.row(i))));
+  for (std::size_t i = 0; i < held_back.rows.size(); ++i) estimates_.append_row(of(held_back.features.row(i)));
 }
 
 std::vector<Interval> PointEstimator::bounds() const {
@@ -387,83 +440,6 @@ std::vector<double> PointEstimator::of(std::span<const float> features) const {
   return estimates;
 }
 
-namespace {
-
-using effects::ParameterInfo;
-
-constexpr double confidence = 0.9;
-constexpr double accepted_share = 0.3;
-constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
-constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
-
-/// The posterior at an estimate, from these held-back datasets.
-stats::AbcPosterior posterior_of(const PointEstimator& estimator, std::span<const double> estimate,
-                                 const std::vector<std::size_t>& rows) {
-  const auto n = static_cast<double>(rows.size());
-  const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
-  return stats::abc_posterior(estimator.parameters().select_rows(rows), estimator.estimates().select_rows(rows),
-                              estimate, {share, estimator.bounds()});
-}
-
-/// Those of these datasets whose estimates lie nearest to the measured one, by the estimates' own scatter.
-std::vector<std::size_t> nearest_of(const PointEstimator& estimator, std::span<const double> estimate,
-                                    const std::vector<std::size_t>& rows) {
-  const stats::Matrix<double> estimates = estimator.estimates().select_rows(rows);
-  std::vector<std::pair<double, std::size_t>> near(rows.size());
-  for (std::size_t i = 0; i < near.size(); ++i) near[i].second = rows[i];
-  for (std::size_t p = 0; p < estimate.size(); ++p) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < estimates.rows(); ++i) values.push_back(estimates(i, p));
-    const double scatter = stats::quantile(values, 0.84) - stats::quantile(values, 0.16) + 1e-12;
-    for (std::size_t i = 0; i < near.size(); ++i)
-      near[i].first += std::pow((estimates(i, p) - estimate[p]) / scatter, 2);
-  }
-  std::ranges::sort(near);
-  near.resize(std::min(near.size(), std::max(fewest_neighbours, near.size() / 4)));
-  std::vector<std::size_t> nearest;
-  for (const auto& [distance, row] : near) nearest.push_back(row);
-  return nearest;
-}
-
-std::vector<std::size_t> without(std::vector<std::size_t> rows, std::size_t row) {
-  std::erase(rows, row);
-  return rows;
-}
-
-/// How far beyond its interval's ends, as a share of the way from the median, a known truth lies.
-double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double truth) {
-  const Interval interval = posterior.interval(parameter, confidence);
-  const double median = posterior.quantile(parameter, 0.5);
-  const double half = truth < median ? median - interval.low : interval.high - median;
-  return std::abs(truth - median) / std::max(half, 1e-12);
-}
-
-/// (n_parameters) By how much intervals must be stretched about their medians so that of these datasets near the
-/// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
-std::vector<double> widening_of(const PointEstimator& estimator, std::span<const double> estimate,
-                                const std::vector<std::size_t>& rows) {
-  const std::size_t n = estimator.infos().size();
-  std::vector<std::vector<double>> reaches(n);
-  for (const std::size_t row : nearest_of(estimator, estimate, rows)) {
-    const stats::AbcPosterior own = posterior_of(estimator, estimator.estimates().row(row), without(rows, row));
-    for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, estimator.parameters()(row, p)));
-  }
-  std::vector<double> widening;
-  for (std::vector<double>& values : reaches) {
-    std::ranges::sort(values);
-    const auto rank = static_cast<std::size_t>(std::ceil(confidence * static_cast<double>(values.size() + 1)));
-    widening.push_back(values[std::min(rank, values.size()) - 1]);
-  }
-  return widening;
-}
-
-}  // namespace
-
-struct EffectFitter::Learnt {
-  std::once_flag once;
-  std::optional<PointEstimator> estimator;
-};
-
 EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
                            std::vector<std::vector<std::size_t>> held_back, const Context& context,
                            std::string left_out)
@@ -474,25 +450,22 @@ EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, 
       threads_(context.threads),
       left_out_(std::move(left_out)),
       learnt_(std::make_unique<Learnt[]>(table.n_hypotheses())) {}
-EffectFitter::~EffectFitter() = default;
-EffectFitter::EffectFitter(EffectFitter&&) noexcept = default;
-EffectFitter& EffectFitter::operator=(EffectFitter&&) noexcept = default;
 
-const EffectFitter::Learnt& EffectFitter::learnt(std::size_t hypothesis) const {
+const PointEstimator& EffectFitter::estimator_of(std::size_t hypothesis) const {
   Learnt& learnt = learnt_[hypothesis];
   std::call_once(learnt.once, [&] {
     const auto datasets = [&](std::span<const std::size_t> rows) {
       return HypothesisDatasets{rows, map_->features(table_->statistics.select_rows(rows), threads_)};
     };
     const std::vector<std::size_t> training =
-        still_made(*table_, rows_of(*table_, hypothesis, Part::training), left_out_);
+        still_made(*table_, rows_of(*table_, hypothesis, Subset::training), left_out_);
     learnt.estimator.emplace(*table_, hypothesis, datasets(training), datasets(held_back_[hypothesis]));
   });
-  return learnt;
+  return *learnt.estimator;
 }
 
 FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> measured) const {
-  const PointEstimator& estimator = *learnt(hypothesis).estimator;
+  const PointEstimator& estimator = estimator_of(hypothesis);
   const std::vector<float> features = map_->features(measured);
   FittedEffect fitted;
   fitted.effect.name = table_->hypothesis_name(hypothesis);
@@ -515,7 +488,7 @@ FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> me
     if (!applies(info, alike)) continue;
     const Interval flat = posterior.interval(p, confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
-                              {},        info.off,  info.role == effects::Role::strength,
+                              {},        info.off,  info.role == Role::strength,
                               {}};
     for (int i = 0; i < 20; ++i) {
       const double middle = posterior.quantile(p, 0.5), value = posterior.quantile(p, (i + 0.5) / 20.0);

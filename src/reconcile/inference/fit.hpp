@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,8 +26,6 @@ namespace pirsim::reconcile {
 [[nodiscard]] double to_flat(const effects::ParameterInfo& info, double value);
 /// Whole where it must be, and within what is accepted.
 [[nodiscard]] double from_flat(const effects::ParameterInfo& info, double value);
-
-// An effect is several things: on this sensor or that, to the left or to the right, hardly or strongly.
 
 /// (n) numbers from 0 on of datasets of one hypothesis that are alike: with the same choices, strengths on the same
 /// side of `off`, and, as far as ten datasets remain in each, in the same third by the parameter that names the
@@ -184,8 +183,6 @@ class PointEstimator {
   stats::Matrix<double> parameters_, estimates_;
 };
 
-// How strong is a named effect?
-
 /// Fits effects from the datasets of one hypothesis of a table alone: a linear estimate of its parameters, then
 /// regression-adjusted ABC on it, widened until held-back datasets like the measured one are covered as often as
 /// promised. What is no matter of more or less (which sensor, which wall, which way) is the likeliest kind by a
@@ -197,17 +194,17 @@ class EffectFitter {
   /// give those in which a disagreement is seen, since nothing else is fitted. left_out: nothing is learnt from it.
   EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
                std::vector<std::vector<std::size_t>> held_back, const Context& context, std::string left_out = {});
-  ~EffectFitter();
-  EffectFitter(EffectFitter&&) noexcept;
-  EffectFitter& operator=(EffectFitter&&) noexcept;
 
   /// hypothesis: 1 or more; measured: statistics. What is learnt about a hypothesis is kept for the next time. Safe to
   /// call from several threads.
   [[nodiscard]] FittedEffect fit(std::size_t hypothesis, std::span<const float> measured) const;
 
  private:
-  struct Learnt;
-  [[nodiscard]] const Learnt& learnt(std::size_t hypothesis) const;
+  struct Learnt {
+    std::once_flag once;
+    std::optional<PointEstimator> estimator;
+  };
+  [[nodiscard]] const PointEstimator& estimator_of(std::size_t hypothesis) const;
 
   const SceneSpec* scene_;
   const ReferenceTable* table_;

@@ -6,6 +6,7 @@
 
 #include "engine/effects/catalogue.hpp"
 #include "model/core/parallel.hpp"
+#include "model/core/text.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
@@ -24,14 +25,27 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
   return cell;
 }
 
+constexpr std::uint32_t n_pilot_realizations = 40;
+
+/// Of those that were asked for by name.
+void require_meaning(const SceneSpec& scene, const ScriptSpec& script, const std::vector<std::string>& asked) {
+  for (const std::string& name : asked) {
+    const effects::EffectInfo& info = effects::find(name).info;
+    if (effects::means_anything(info, scene, script.sensing)) continue;
+    throw Error(ErrorCode::usage, "effects: " + name +
+                                      " can't be looked for: it acts on sensors with response: zones, "
+                                      "and every sensor's response is analog");
+  }
+}
+
 }  // namespace
 
-std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Part part) {
+std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Subset subset) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (table.rows[i].hypothesis != hypothesis) continue;
     const bool held_back = is_for_calibration(table.rows[i].realization);
-    if (part == Part::all || held_back == (part == Part::calibration)) rows.push_back(i);
+    if (subset == Subset::all || held_back == (subset == Subset::calibration)) rows.push_back(i);
   }
   return rows;
 }
@@ -53,22 +67,16 @@ stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix
   return tested;
 }
 
-std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics) {
-  return tested_features(map, map.features(statistics));
-}
-
-stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matrix<float>& statistics,
-                                        unsigned threads) {
-  return tested_features(map, map.features(statistics, threads));
+std::string p_in_words(double p, double least_p) {
+  return (least_p > 0.0 && p <= least_p ? "p <= " : "p = ") + short_number(p);
 }
 
 Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                 std::span<const float> measured, double alpha, const Context& context) {
   const std::vector<std::size_t>& columns = map.envelope_columns();
-  const stats::Matrix<double> simulated = tested_statistics(map, plain, context.threads);
-  const std::vector<double> observed = tested_statistics(map, measured);
-  const stats::GlobalEnvelope test = stats::global_envelope_test(
-      observed, simulated, {alpha, stats::PointwiseRank::continuous, context.seed, context.threads});
+  const stats::Matrix<double> simulated = tested_features(map, map.features(plain, context.threads));
+  const std::vector<double> observed = tested_features(map, map.features(measured));
+  const stats::GlobalEnvelope test = stats::global_envelope_test(observed, simulated, {alpha, context.threads});
 
   Location location;
   location.p = test.p;
@@ -90,23 +98,20 @@ Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Mat
   return location;
 }
 
-TableView::TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
-                     const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads)
-    : scene_(scene),
-      frame_(frame),
-      table_(table),
-      map_(frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)),
+TableView::TableView(const ReferenceStudy& study, std::vector<std::size_t> trials, unsigned threads)
+    : study_(study),
+      map_(study.map(std::move(trials))),
       threads_(threads),
-      plain_(table.statistics.select_rows(rows_of(table, 0, Part::all))),
+      plain_(study.table.statistics.select_rows(rows_of(study.table, 0, Subset::all))),
       plain_reference_(tested_features(map_, map_.features(plain_, threads))) {}
 
 const TableView::Rows& TableView::rows() const {
   std::call_once(rows_known_, [this] {
-    rows_.features = map_.features(table_.statistics, threads_);
-    rows_.p.assign(table_.rows.size(), 1.0);
+    rows_.features = map_.features(table().statistics, threads_);
+    rows_.p.assign(table().rows.size(), 1.0);
     std::vector<std::size_t> seen;
-    for (std::size_t hypothesis = 1; hypothesis < table_.n_hypotheses(); ++hypothesis) {
-      const std::vector<std::size_t> own = rows_of(table_, hypothesis, Part::calibration);
+    for (std::size_t hypothesis = 1; hypothesis < table().n_hypotheses(); ++hypothesis) {
+      const std::vector<std::size_t> own = rows_of(table(), hypothesis, Subset::calibration);
       seen.insert(seen.end(), own.begin(), own.end());
     }
     std::size_t next = 0;
@@ -119,25 +124,8 @@ const TableView::Rows& TableView::rows() const {
 }
 
 double TableView::p(std::span<const float> statistics) const {
-  return plain_reference_.p(tested_statistics(map_, statistics));
+  return plain_reference_.p(tested_features(map_, map_.features(statistics)));
 }
-
-namespace {
-
-constexpr std::uint32_t n_pilot_realizations = 40;
-
-/// Of those that were asked for by name.
-void require_meaning(const SceneSpec& scene, const ScriptSpec& script, const std::vector<std::string>& asked) {
-  for (const std::string& name : asked) {
-    const effects::EffectInfo& info = effects::find(name).info;
-    if (effects::means_anything(info, scene, script.sensing)) continue;
-    throw Error(ErrorCode::usage, "effects: " + name +
-                                      " can't be looked for: it acts on sensors with response: zones, "
-                                      "and every sensor's response is analog");
-  }
-}
-
-}  // namespace
 
 ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
@@ -147,33 +135,31 @@ ReferenceStudy make_reference_study(
                            frame_of(scene, script),
                            cell_knowledge(scene, script),
                            {},
-                           {},
                            {}};
-  context.begin({Stage::What::pilot_runs});
+  context.begin("pilot runs");
   const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, n_pilot_realizations, context);
   reference.shape = shape_of_data(reference.frame, pilot);
-  context.begin({Stage::What::reference_table});
+  context.begin("reference table");
   reference.table =
       make_reference_table(reference.source, reference.frame, reference.shape,
                            profile_of(reference.frame, script, pilot), settings.table, settings.table_folder, context);
-  reference.key = reference.table.key;
   return reference;
 }
 
-FeatureMap ReferenceStudy::map(std::vector<std::size_t> trials) const {
-  return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)};
+ReferenceStudy make_full_study(const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
+                               Measured::Kind kind, int n_replicates, const Context& context) {
+  const auto shape_of_data = [&](const StudyFrame& frame, std::span<const Series> pilot) {
+    return full_shape(frame, kind, n_replicates, pilot);
+  };
+  return make_reference_study(scene, script, settings, shape_of_data, context);
 }
 
-std::vector<std::string> idle_effects(const SceneSpec& scene, const ScriptSpec& script) {
-  std::vector<std::string> names;
-  for (const effects::Effect* effect : effects::catalogue()) {
-    if (!effects::means_anything(effect->info, scene, script.sensing)) names.push_back(effect->info.name);
-  }
-  return names;
+FeatureMap ReferenceStudy::map(std::vector<std::size_t> trials) const {
+  return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Subset::training)), std::move(trials)};
 }
 
 std::shared_ptr<const TableView> ReferenceStudy::view(std::vector<std::size_t> trials, unsigned threads) const {
-  return std::make_shared<const TableView>(source.scene, frame, knowledge, table, std::move(trials), threads);
+  return std::make_shared<const TableView>(*this, std::move(trials), threads);
 }
 
 }  // namespace pirsim::reconcile

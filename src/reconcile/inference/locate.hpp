@@ -20,35 +20,47 @@ namespace pirsim::reconcile {
 [[nodiscard]] Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                               std::span<const float> measured, double alpha, const Context& context);
 
-/// What the global test looks at of features that are known: (n_tested_statistics) of a dataset, (n_datasets x
+/// "p = 0.013"; "p <= 0.0099" if no data give a smaller one than `least_p`.
+[[nodiscard]] std::string p_in_words(double p, double least_p = 0.0);
+
+/// What the global test looks at of features: (n_tested_statistics) of a dataset, (n_datasets x
 /// n_tested_statistics) of many.
 [[nodiscard]] std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features);
 [[nodiscard]] stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features);
-/// What the global test looks at of datasets' statistics.
-[[nodiscard]] std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics);
-[[nodiscard]] stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matrix<float>& statistics,
-                                                      unsigned threads);
 
 /// Statistics of the datasets of one hypothesis, all or those of training or calibration realizations.
-enum class Part { all, training, calibration };
-[[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Part part);
+enum class Subset { all, training, calibration };
+[[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Subset subset);
 /// Of an effect that is in the table.
 [[nodiscard]] std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect);
 
-// A study with the reference table that its data are compared with, and how the table looks in some of the trials: its
-// datasets' features, and what the global test says of them.
+class TableView;
 
-/// Everything that doesn't depend on which effects are candidates, worked out once: what only a classifier asks for, at
-/// its first question, since data that agree with the model need none. Immutable to whoever looks at it.
+/// A study with the reference table that its data, of one shape, are compared with.
+struct ReferenceStudy {
+  RealizationSource source;
+  StudyFrame frame;
+  std::vector<CellKnowledge> knowledge;
+  DataShape shape;
+  ReferenceTable table;
+
+  /// What the plain model's training datasets say of these trials (sorted).
+  [[nodiscard]] FeatureMap map(std::vector<std::size_t> trials) const;
+  /// The table as it looks in these trials (sorted); must not outlive the study.
+  [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
+};
+
+/// How the table looks in some of the trials: its datasets' features, and what the global test says of them. The study
+/// must outlive it. Everything that doesn't depend on which effects are candidates, worked out once: what only a
+/// classifier asks for, at its first question, since data that agree with the model need none. Immutable to whoever
+/// looks at it.
 class TableView {
  public:
-  /// scene, frame and table must outlive it. trials: those that are looked at (sorted).
-  TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
-            const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads);
+  /// trials: those that are looked at (sorted).
+  TableView(const ReferenceStudy& study, std::vector<std::size_t> trials, unsigned threads);
 
-  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
-  [[nodiscard]] const StudyFrame& frame() const noexcept { return frame_; }
-  [[nodiscard]] const ReferenceTable& table() const noexcept { return table_; }
+  [[nodiscard]] const ReferenceStudy& study() const noexcept { return study_; }
+  [[nodiscard]] const ReferenceTable& table() const noexcept { return study_.table; }
   [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
   /// (n_rows x n_features) of the table's rows.
   [[nodiscard]] const stats::Matrix<float>& features() const { return rows().features; }
@@ -67,9 +79,7 @@ class TableView {
   };
   [[nodiscard]] const Rows& rows() const;
 
-  const SceneSpec& scene_;
-  const StudyFrame& frame_;
-  const ReferenceTable& table_;
+  const ReferenceStudy& study_;
   FeatureMap map_;
   unsigned threads_;
   stats::Matrix<float> plain_;
@@ -78,28 +88,13 @@ class TableView {
   mutable Rows rows_;
 };
 
-// A study with the reference table that its data are compared with.
-
-/// For one shape of data.
-struct ReferenceStudy {
-  RealizationSource source;
-  StudyFrame frame;
-  std::vector<CellKnowledge> knowledge;
-  DataShape shape;
-  ReferenceTable table;
-  std::string key;  ///< of the table
-
-  /// What the plain model's training datasets say of these trials (sorted).
-  [[nodiscard]] FeatureMap map(std::vector<std::size_t> trials) const;
-  /// The table as it looks in these trials (sorted); must not outlive the study.
-  [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
-};
 [[nodiscard]] ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
     const std::function<DataShape(const StudyFrame&, std::span<const Series> pilot)>& shape_of_data,
     const Context& context = {});
 
-/// Names of the catalogue's effects that mean nothing to any sensor of the study.
-[[nodiscard]] std::vector<std::string> idle_effects(const SceneSpec& scene, const ScriptSpec& script);
+/// The same for full data: n_replicates runs of every trial.
+[[nodiscard]] ReferenceStudy make_full_study(const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
+                                             Measured::Kind kind, int n_replicates, const Context& context = {});
 
 }  // namespace pirsim::reconcile

@@ -50,91 +50,6 @@ std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Refer
   return all;
 }
 
-/// Simulates datasets of some models, more and more. Of each model one in a realization: those of one realization share
-/// the room, so that data of another room would be stranger than any of them.
-class Ensembles {
- public:
-  Ensembles(std::span<const PatchedModel> models, const ReferenceStudy& reference, const Context& context)
-      : models_(models), reference_(reference), context_(context), datasets_(models.size()) {}
-
-  /// Simulates those models, by index, in all realizations up to this one. Call with fewer models and more realizations
-  /// each time.
-  void extend(std::span<const std::size_t> which, std::uint32_t n_realizations) {
-    ordered_parallel<Rows>(
-        n_realizations - n_realizations_, context_.threads,
-        [&](std::size_t i) {
-          return datasets_in(first_check_realization + n_realizations_ + static_cast<std::uint32_t>(i), which);
-        },
-        [&](const Rows& rows) {
-          for (std::size_t k = 0; k < which.size(); ++k) {
-            if (!rows[k].empty()) datasets_[which[k]].append_row(std::span<const float>(rows[k]));
-          }
-        });
-    n_realizations_ = n_realizations;
-  }
-
-  /// (n x n_statistics) of one model.
-  [[nodiscard]] const stats::Matrix<float>& of(std::size_t model) const { return datasets_[model]; }
-  void forget(std::size_t model) { datasets_[model] = {}; }
-
- private:
-  using Rows = std::vector<std::vector<float>>;  ///< one a model; empty: people can't get about
-
-  [[nodiscard]] Rows datasets_in(std::uint32_t index, std::span<const std::size_t> which) const {
-    const int n = reference_.shape.n_replicates;
-    const SimulatedRealization realization(reference_.source, reference_.frame, index, n);
-    Rows rows;
-    for (const std::size_t k : which) {
-      const auto data = realization.with_effects(drawn(models_[k].applied, reference_, context_.seed, index), 0, n);
-      rows.push_back(data ? statistics_of(reference_.frame, reference_.shape, reference_.table.profile, *data)
-                          : std::vector<float>());
-    }
-    return rows;
-  }
-
-  std::span<const PatchedModel> models_;
-  const ReferenceStudy& reference_;
-  const Context& context_;
-  std::vector<stats::Matrix<float>> datasets_;  // one a model
-  std::uint32_t n_realizations_ = 0;
-};
-
-}  // namespace
-
-double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
-
-std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
-                            const FeatureMap& map, double level, const Context& context) {
-  Ensembles ensembles(models, reference, context);
-  std::vector<GlobalP> p(models.size());
-  std::vector<std::size_t> in_doubt(models.size());
-  std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
-  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
-  for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
-    if (in_doubt.empty()) break;
-    ensembles.extend(in_doubt, n_realizations);
-    std::vector<std::size_t> still;
-    for (const std::size_t k : in_doubt) {
-      const stats::Matrix<float>& datasets = ensembles.of(k);
-      if (datasets.rows() > 1) {
-        const Location seen = locate(reference.frame, map, datasets, models[k].observed, level, context);
-        p[k] = {seen.p, seen.least_p()};
-      }
-      if (surely_passes(p[k].p, datasets.rows()))
-        ensembles.forget(k);
-      else
-        still.push_back(k);
-    }
-    in_doubt = std::move(still);
-  }
-  for (const std::size_t k : in_doubt) {
-    if (!can_refuse(ensembles.of(k).rows(), level)) p[k] = {};
-  }
-  return p;
-}
-
-namespace {
-
 constexpr double last_part = 0.1;   ///< of the prior (assumed): a tenth of what was looked for ends there by chance
 constexpr double step = 4.0 / 3.0;  ///< assumed
 constexpr double farthest = 20.0;   ///< times as far from none as the end (assumed)
@@ -177,6 +92,59 @@ FittedEffect with_value(FittedEffect fitted, const std::string& parameter, doubl
 }
 
 }  // namespace
+
+double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
+
+std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
+                            const FeatureMap& map, double level, const Context& context) {
+  using Rows = std::vector<std::vector<float>>;  // one a model; empty: people can't get about
+  const int n = reference.shape.n_replicates;
+  // Of each model one in a realization: those of one realization share the room, so that data of another room would be
+  // stranger than any of them.
+  std::vector<stats::Matrix<float>> datasets(models.size());
+  std::vector<GlobalP> p(models.size());
+  std::vector<std::size_t> in_doubt = stats::numbers_to(models.size());
+  std::uint32_t n_done = 0;
+  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
+  for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
+    if (in_doubt.empty()) break;
+    ordered_parallel<Rows>(
+        n_realizations - n_done, context.threads,
+        [&](std::size_t i) {
+          const std::uint32_t index = first_check_realization + n_done + static_cast<std::uint32_t>(i);
+          const SimulatedRealization realization(reference.source, reference.frame, index, n);
+          Rows rows;
+          for (const std::size_t k : in_doubt) {
+            const auto data = realization.with_effects(drawn(models[k].applied, reference, context.seed, index), 0, n);
+            rows.push_back(data ? statistics_of(reference.frame, reference.shape, reference.table.profile, *data)
+                                : std::vector<float>());
+          }
+          return rows;
+        },
+        [&](const Rows& rows) {
+          for (std::size_t k = 0; k < in_doubt.size(); ++k) {
+            if (!rows[k].empty()) datasets[in_doubt[k]].append_row(rows[k]);
+          }
+        });
+    n_done = n_realizations;
+    std::vector<std::size_t> still;
+    for (const std::size_t k : in_doubt) {
+      if (datasets[k].rows() > 1) {
+        const Location seen = locate(reference.frame, map, datasets[k], models[k].observed, level, context);
+        p[k] = {seen.p, seen.least_p()};
+      }
+      if (surely_passes(p[k].p, datasets[k].rows()))
+        datasets[k] = {};
+      else
+        still.push_back(k);
+    }
+    in_doubt = std::move(still);
+  }
+  for (const std::size_t k : in_doubt) {
+    if (!can_refuse(datasets[k].rows(), level)) p[k] = {};
+  }
+  return p;
+}
 
 std::optional<RangeEnd> range_end_of(const FittedEffect& fitted) {
   std::vector<const FittedParameter*> parameters;

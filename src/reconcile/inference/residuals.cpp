@@ -17,44 +17,20 @@
 #include "stats/intervals.hpp"
 #include "stats/trees.hpp"
 
-// What residuals may depend on: who and when.
-
 namespace pirsim::reconcile {
-
-/// Cells (trial x sensor).
-struct Who {
-  ResidualDriver::Who who = ResidualDriver::Who::all_sensors;
-  std::string name;                 ///< of the sensor or the trial
-  std::vector<std::uint8_t> cells;  ///< (n_cells) 1: looked at
-};
-/// Weight of each row of a trial's main part.
-struct When {
-  ResidualDriver::When when = ResidualDriver::When::always;
-  double from = 0.0, to = 0.0;
-  std::vector<std::vector<double>> weight;  ///< (n_trials x n_main)
-
-  [[nodiscard]] bool is_always() const noexcept { return when == ResidualDriver::When::always; }
-  /// It rises and falls; others have two values.
-  [[nodiscard]] bool is_wave() const noexcept { return when == ResidualDriver::When::wave; }
-};
-
-[[nodiscard]] std::vector<Who> all_who(const ReferenceStudy& reference);
-[[nodiscard]] std::vector<When> all_when(const ReferenceStudy& reference);
-
 namespace {
 
-using DriverWhen = ResidualDriver::When;
-
-constexpr std::size_t fewest_runs = 4;   ///< of three a step can't be told from a trend
-constexpr double fewest_awaited = 15.0;  ///< rows of a run (assumed): the share of fewer is chance
-constexpr double least_variance = 0.02;  ///< of a run's log odds (assumed): no model is known better
-constexpr double much_sds = 2.0;         ///< off (1, 1.5, 2 and none were tried)
-constexpr double least_scatter = 0.05;   ///< of a contrast's values (assumed): a row more or less of some tens
+constexpr const char* all_sensors = "all sensors";
+constexpr double n_contrast_kinds = 3.0;  ///< session of all sensors, session of one, all at once
+constexpr std::size_t fewest_runs = 4;    ///< of three a step can't be told from a trend
+constexpr double fewest_awaited = 15.0;   ///< rows of a run (assumed): the share of fewer is chance
+constexpr double least_variance = 0.02;   ///< of a run's log odds (assumed): no model is known better
+constexpr double much_sds = 2.0;          ///< off (1, 1.5, 2 and none were tried)
+constexpr double least_scatter = 0.05;    ///< of a contrast's values (assumed): a row more or less of some tens
 
 /// Indices of the data's runs as they follow each other.
 std::vector<std::size_t> in_order(const std::vector<DataShape::Run>& runs) {
-  std::vector<std::size_t> order(runs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order = stats::numbers_to(runs.size());
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return std::pair(runs[i].replicate, runs[i].trial); });
   return order;
 }
@@ -96,9 +72,15 @@ class RunOdds {
   std::vector<double> mean_, sd_, weight_;  ///< (n_runs)
 };
 
+/// What a contrast is called, of either side.
+struct ContrastWords {
+  std::string who, when;
+  std::string more, less;  ///< less: empty if one side alone is looked at
+};
+
 /// A weighted sum of log odds over the runs, with weights that sum up to 0.
 struct Contrast {
-  ResidualDriver driver;     ///< who and when
+  ContrastWords words;
   std::size_t column = 0;    ///< of ContrastData::gaps
   std::vector<double> load;  ///< (n_runs) for log odds
 };
@@ -130,20 +112,16 @@ class Session {
     const std::size_t n_sensors = frame.sensors.size();
     for (std::size_t column = 0; column < 1 + n_sensors; ++column) {
       odds_.emplace_back(simulated, column);
-      ResidualDriver driver;
-      driver.how = ResidualDriver::How::with_gaps;
-      if (column > 0) {
-        driver.who = ResidualDriver::Who::sensor;
-        driver.name = frame.sensors[column - 1];
-      }
-      driver.when = DriverWhen::from_trial_to_trial;
-      add(driver, column, [](std::size_t place) { return static_cast<double>(place); });
-      driver.when = DriverWhen::from_trial;
+      const std::string who = column == 0 ? all_sensors : frame.sensors[column - 1];
+      add({who, "from trial to trial", "motion has more and more gaps", "motion has fewer and fewer gaps"}, column,
+          [](std::size_t place) { return static_cast<double>(place); });
       for (std::size_t first = 1; first < order_.size(); ++first) {
         const DataShape::Run& run = shape.runs[order_[first]];
-        driver.since = frame.trials[run.trial];
-        if (shape.n_replicates > 1) driver.since += " of run " + std::to_string(run.replicate);
-        add(driver, column, [first](std::size_t place) { return place >= first ? 1.0 : 0.0; });
+        const std::string since =
+            frame.trials[run.trial] + (shape.n_replicates > 1 ? " of run " + std::to_string(run.replicate) : "");
+        add({who, "from about trial " + since + " on", "motion has more gaps than before",
+             "motion has fewer gaps than before"},
+            column, [first](std::size_t place) { return place >= first ? 1.0 : 0.0; });
       }
       if (n_sensors == 1) break;  // all are the one
     }
@@ -158,11 +136,11 @@ class Session {
 
  private:
   template <typename Along>
-  void add(const ResidualDriver& driver, std::size_t column, const Along& of_place) {
+  void add(const ContrastWords& words, std::size_t column, const Along& of_place) {
     std::vector<double> along(order_.size());
     for (std::size_t place = 0; place < order_.size(); ++place) along[order_[place]] = of_place(place);
     auto loads = slope_loads(odds_[column], along);
-    if (!loads.empty()) contrasts_.push_back({driver, column, std::move(loads)});
+    if (!loads.empty()) contrasts_.push_back({words, column, std::move(loads)});
   }
 
   std::vector<std::size_t> order_;
@@ -171,12 +149,11 @@ class Session {
 };
 
 /// The strongest of some contrasts of data, against the strongest in each simulated dataset.
-/// measured: (n_contrasts), simulated: (n_datasets x n_contrasts); drivers: (n_contrasts). Gaps at the same moments
-/// less often than by chance have no known cause: of these one side is looked at.
-std::optional<ResidualDriver> strongest(std::span<const ResidualDriver> drivers, const std::vector<double>& measured,
+/// measured: (n_contrasts), simulated: (n_datasets x n_contrasts); words: (n_contrasts).
+std::optional<ResidualDriver> strongest(std::span<const ContrastWords> words, const std::vector<double>& measured,
                                         const std::vector<std::vector<double>>& simulated) {
   const auto n = static_cast<double>(simulated.size());
-  std::vector<double> mean(drivers.size(), 0.0), sd(drivers.size(), 0.0);
+  std::vector<double> mean(words.size(), 0.0), sd(words.size(), 0.0);
   for (const auto& values : simulated) {
     for (std::size_t i = 0; i < values.size(); ++i) mean[i] += values[i] / n;
   }
@@ -185,99 +162,48 @@ std::optional<ResidualDriver> strongest(std::span<const ResidualDriver> drivers,
   }
   const auto z = [&](const std::vector<double>& values, std::size_t i) { return (values[i] - mean[i]) / sd[i]; };
   const auto size = [&](const std::vector<double>& values, std::size_t i) {
-    const bool one_sided = drivers[i].how == ResidualDriver::How::silent_together;
-    return one_sided ? z(values, i) : std::abs(z(values, i));
+    return words[i].less.empty() ? z(values, i) : std::abs(z(values, i));
   };
   const auto best_of = [&](const std::vector<double>& values) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < values.size(); ++i) best = size(values, i) > size(values, best) ? i : best;
     return best;
   };
-  if (drivers.empty()) return std::nullopt;
+  if (words.empty()) return std::nullopt;
   for (double& s : sd) s = std::sqrt(s + least_scatter * least_scatter);
   const std::size_t best = best_of(measured);
   const auto beyond = std::ranges::count_if(simulated, [&](const std::vector<double>& values) {
     return size(values, best_of(values)) >= size(measured, best);
   });
-  ResidualDriver driver = drivers[best];
-  driver.log_odds = measured[best] - mean[best];
-  driver.standard_error = sd[best];
-  driver.z = z(measured, best);
-  driver.up = driver.z > 0.0;
-  driver.p = std::min(1.0, n_contrast_kinds * (1.0 + static_cast<double>(beyond)) / (1.0 + n));
-  driver.least_p = n_contrast_kinds / (1.0 + n);
-  return driver;
+  const auto& [who, when, more, less] = words[best];
+  return ResidualDriver{who,
+                        when,
+                        less.empty() || z(measured, best) > 0.0 ? more : less,
+                        measured[best] - mean[best],
+                        sd[best],
+                        z(measured, best),
+                        std::min(1.0, n_contrast_kinds * (1.0 + static_cast<double>(beyond)) / (1.0 + n)),
+                        n_contrast_kinds / (1.0 + n)};
 }
 
-}  // namespace
+// What residuals may depend on: who and when.
 
-ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std::span<const Series> runs) {
-  const std::size_t n = frame.sensors.size();
-  ContrastData data;
-  std::vector<Series> seen;
-  for (const DataShape::Run& wanted : shape.runs) {
-    std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n);
-    const auto run = std::ranges::find_if(
-        runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
-    if (run == runs.end()) continue;
-    Series& main = seen.emplace_back(*run);
-    main.main_end = std::min(main.main_end, main.main_begin + wanted.n_main);
-    const std::size_t first = main.main_begin * n;
-    for (std::size_t i = 0; i < std::min(wanted.unknown.size(), main.main_end * n - first); ++i) {
-      if (wanted.unknown[i] != 0) main.bits[first + i] = unknown_bit;
-    }
-    const std::vector<Gaps> own = gaps_of(main, n);
-    for (std::size_t s = 0; s < n; ++s) {
-      gaps[0].awaited += own[s].awaited;
-      gaps[0].silent += own[s].silent;
-      gaps[1 + s] = own[s];
-    }
-  }
-  data.joint_silence = joint_silence(seen, n).log_ratio();
-  return data;
-}
+/// Cells (trial x sensor).
+struct Who {
+  std::string words;
+  std::vector<std::uint8_t> cells;  ///< (n_cells) 1: looked at
+  bool is_trial = false;
+};
+/// Weight of each row of a trial's main part.
+struct When {
+  std::string words;                        ///< empty: always
+  std::vector<std::vector<double>> weight;  ///< (n_trials x n_main)
+  bool is_wave = false;                     ///< it rises and falls; others have two values
+};
 
-std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const DataShape& shape,
-                                              const ContrastData& measured, const std::vector<ContrastData>& simulated,
-                                              double alpha) {
-  std::vector<ResidualDriver> telling;
-  const auto look = [&](std::span<const ResidualDriver> drivers, const auto& values_of) {
-    std::vector<std::vector<double>> usual;
-    for (const ContrastData& one : simulated) usual.push_back(values_of(one));
-    const auto found = strongest(drivers, values_of(measured), usual);
-    if (found && found->p <= alpha) telling.push_back(*found);
-  };
-  const Session session(frame, shape, simulated);
-  const auto look_at_session = [&](const auto& wanted) {
-    std::vector<const Contrast*> contrasts;
-    std::vector<ResidualDriver> drivers;
-    for (const Contrast& contrast : session.contrasts()) {
-      if (!wanted(contrast)) continue;
-      contrasts.push_back(&contrast);
-      drivers.push_back(contrast.driver);
-    }
-    look(drivers, [&](const ContrastData& data) {
-      std::vector<double> values;
-      for (const Contrast* contrast : contrasts) values.push_back(session.value(*contrast, data));
-      return values;
-    });
-  };
-  look_at_session([](const Contrast& contrast) { return contrast.column == 0; });
-  look_at_session([](const Contrast& contrast) { return contrast.column > 0; });
-  ResidualDriver together;
-  together.how = ResidualDriver::How::silent_together;
-  look(std::span(&together, 1), [](const ContrastData& data) { return std::vector<double>{data.joint_silence}; });
-  std::ranges::stable_sort(telling, std::ranges::greater{}, [](const ResidualDriver& d) { return std::abs(d.z); });
-  return telling;
-}
-
-namespace {
-
-using DriverWhen = ResidualDriver::When;
-
-Who cells_of(const ReferenceStudy& reference, ResidualDriver::Who who, std::string name,
+Who cells_of(const ReferenceStudy& reference, std::string words,
              const std::function<bool(std::size_t trial, std::size_t sensor)>& holds) {
-  Who one{who, std::move(name), {}};
+  Who one{std::move(words), {}};
   for (std::size_t trial = 0; trial < reference.frame.trials.size(); ++trial) {
     for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor)
       one.cells.push_back(holds(trial, sensor) ? 1 : 0);
@@ -285,15 +211,16 @@ Who cells_of(const ReferenceStudy& reference, ResidualDriver::Who who, std::stri
   return one;
 }
 
+std::string whole(double value) { return std::to_string(std::lround(value)); }
+
 /// Adds what depends on the time since the main part began and on its length alone. Weights have the mean 0 in each
 /// run, so that a seat or a sensor that sees more all the time isn't taken for a matter of time.
 class Times {
  public:
   explicit Times(const ReferenceStudy& reference) : reference_(reference) {}
 
-  void add(ResidualDriver::When kind, double from, double to,
-           const std::function<double(double time_s, double length_s)>& weight) {
-    When when{kind, from, to, {}};
+  void add(const std::string& words, const std::function<double(double time_s, double length_s)>& weight) {
+    When when{words, {}};
     for (const Profile::Trial& trial : reference_.table.profile.trials) {
       when.weight.emplace_back();
       const double length_s = static_cast<double>(trial.n_main) * reference_.frame.window_s;
@@ -302,21 +229,21 @@ class Times {
         when.weight.back().push_back(weight((static_cast<double>(row) + 0.5) * reference_.frame.window_s, length_s));
         mean += when.weight.back().back() / static_cast<double>(trial.n_main);
       }
-      if (when.is_always()) continue;
+      if (words.empty()) continue;
       for (double& w : when.weight.back()) w -= mean;
     }
     all.push_back(std::move(when));
   }
   /// A part of the run, from and to as shares of its length.
-  void add_part(ResidualDriver::When kind, double from, double to) {
-    add(kind, from, to, [=](double t, double length) { return t >= from * length && t < to * length ? 1.0 : 0.0; });
+  void add_part(const std::string& part, double from, double to) {
+    add("in the " + part + " of each run",
+        [=](double t, double length) { return t >= from * length && t < to * length ? 1.0 : 0.0; });
   }
-  /// n equal parts of every period; kind_of(begin, end) says what they are.
-  void add_phases(double period_s, int n, const std::function<When(double, double)>& kind_of) {
+  /// n equal parts of every period; words(begin, end) says what they are.
+  void add_phases(double period_s, int n, const std::function<std::string(double, double)>& words) {
     for (int i = 0; i < n; ++i) {
       const double begin = period_s * i / n, end = period_s * (i + 1) / n;
-      const When kind = kind_of(begin, end);
-      add(kind.when, kind.from, kind.to, [=](double t, double) {
+      add(words(begin, end), [=](double t, double) {
         const double phase = std::fmod(t, period_s);
         return phase >= begin && phase < end ? 1.0 : 0.0;
       });
@@ -329,57 +256,26 @@ class Times {
   const ReferenceStudy& reference_;
 };
 
-const action::Work* first_work(const ScriptSpec& script) {
-  for (const TrialSpec& trial : script.trials) {
-    if (const auto* work = first<action::Work>(trial)) return work;
-  }
-  return nullptr;
-}
-
-void add_posture(Times& times, double period_s) {
-  constexpr int parts = 6;
-  times.add_phases(period_s, parts, [&](double begin, double end) {
-    return When{end > period_s - 1e-9 ? DriverWhen::before_posture : DriverWhen::after_posture, begin, end, {}};
-  });
-}
-
-void add_waves(Times& times, double longest_s) {
-  constexpr std::array<double, 11> periods_s{40, 45, 50, 56, 63, 71, 80, 90, 101, 113, 127};
-  constexpr int phases = 8;
-  for (const double period_s : periods_s) {
-    if (1.5 * period_s > longest_s) continue;
-    for (int i = 0; i < phases; ++i) {
-      const double top_s = period_s * i / phases;
-      times.add(DriverWhen::wave, period_s, top_s,
-                [=](double t, double) { return std::cos(2.0 * std::numbers::pi * (t - top_s) / period_s); });
-    }
-  }
-}
-
-}  // namespace
-
 std::vector<Who> all_who(const ReferenceStudy& reference) {
-  using enum ResidualDriver::Who;
-  std::vector<Who> all{cells_of(reference, all_sensors, {}, [](auto, auto) { return true; })};
+  std::vector<Who> all{cells_of(reference, all_sensors, [](auto, auto) { return true; })};
   const StudyFrame& frame = reference.frame;
   for (std::size_t s = 0; s < frame.sensors.size(); ++s)
-    all.push_back(cells_of(reference, sensor, frame.sensors[s], [s](auto, std::size_t number) { return number == s; }));
-  for (std::size_t t = 0; t < frame.trials.size(); ++t)
-    all.push_back(cells_of(reference, trial, frame.trials[t], [t](std::size_t number, auto) { return number == t; }));
-  const auto knowledge = [&](std::size_t t, std::size_t s) -> const CellKnowledge& {
-    return reference.knowledge[frame.cell(t, s)];
-  };
+    all.push_back(cells_of(reference, frame.sensors[s], [s](auto, std::size_t number) { return number == s; }));
+  for (std::size_t t = 0; t < frame.trials.size(); ++t) {
+    all.push_back(cells_of(reference, frame.trials[t], [t](std::size_t number, auto) { return number == t; }));
+    all.back().is_trial = true;
+  }
   std::vector<double> distances;
   for (const CellKnowledge& cell : reference.knowledge) distances.push_back(cell.distance_m);
   const double near = stats::quantile(distances, 1.0 / 3.0), far = stats::quantile(distances, 2.0 / 3.0);
-  all.push_back(cells_of(reference, near_seat, {},
-                         [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m < near; }));
-  all.push_back(cells_of(reference, far_from_seat, {},
-                         [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m > far; }));
-  all.push_back(
-      cells_of(reference, faced, {}, [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing > 0.5; }));
-  all.push_back(
-      cells_of(reference, behind, {}, [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing < -0.5; }));
+  const auto add = [&](const char* words, const std::function<bool(const CellKnowledge&)>& holds) {
+    all.push_back(cells_of(reference, words,
+                           [&](std::size_t t, std::size_t s) { return holds(reference.knowledge[frame.cell(t, s)]); }));
+  };
+  add("sensors near the seat", [&](const CellKnowledge& cell) { return cell.distance_m < near; });
+  add("sensors far from the seat", [&](const CellKnowledge& cell) { return cell.distance_m > far; });
+  add("sensors that the sitter faces", [](const CellKnowledge& cell) { return cell.facing > 0.5; });
+  add("sensors behind the sitter", [](const CellKnowledge& cell) { return cell.facing < -0.5; });
   return all;
 }
 
@@ -388,30 +284,49 @@ std::vector<When> all_when(const ReferenceStudy& reference) {
   double longest_s = 0.0;
   for (const Profile::Trial& trial : reference.table.profile.trials)
     longest_s = std::max(longest_s, static_cast<double>(trial.n_main) * reference.frame.window_s);
-  times.add(DriverWhen::always, 0.0, 0.0, [](double, double) { return 1.0; });
-  times.add_part(DriverWhen::first_half, 0.0, 0.5);
-  times.add_part(DriverWhen::second_half, 0.5, 1.0);
-  times.add_part(DriverWhen::first_third, 0.0, 1.0 / 3.0);
-  times.add_part(DriverWhen::middle_third, 1.0 / 3.0, 2.0 / 3.0);
-  times.add_part(DriverWhen::last_third, 2.0 / 3.0, 1.0);
+  times.add("", [](double, double) { return 1.0; });
+  times.add_part("first half", 0.0, 0.5);
+  times.add_part("second half", 0.5, 1.0);
+  times.add_part("first third", 0.0, 1.0 / 3.0);
+  times.add_part("middle third", 1.0 / 3.0, 2.0 / 3.0);
+  times.add_part("last third", 2.0 / 3.0, 1.0);
   constexpr double minute_s = 60.0;
   if (longest_s >= 2.0 * minute_s) {
     times.add_phases(minute_s, 10, [](double begin, double end) {
-      return When{DriverWhen::of_minute, begin, end, {}};
+      return begin == 0.0 ? "in the first " + whole(end) + " s of each minute"
+                          : "from second " + whole(begin) + " to " + whole(end) + " of each minute";
     });
   }
-  if (const action::Work* work = first_work(reference.source.script)) {
-    if (longest_s >= 2.0 * work->tilt_every_s && work->tilt_choices_deg.size() > 1)
-      add_posture(times, work->tilt_every_s);
+  const action::Work* work = nullptr;
+  for (const TrialSpec& trial : reference.source.script.trials) {
+    if (work == nullptr) work = first<action::Work>(trial);
+  }
+  if (work != nullptr) {
+    if (longest_s >= 2.0 * work->tilt_every_s && work->tilt_choices_deg.size() > 1) {
+      times.add_phases(work->tilt_every_s, 6, [&](double begin, double end) {
+        if (end > work->tilt_every_s - 1e-9)
+          return "in the last " + whole(end - begin) + " s before each change of posture";
+        return (begin == 0.0 ? "in the first " + whole(end) : "from " + whole(begin) + " to " + whole(end)) +
+               " s after each change of posture";
+      });
+    }
     times.add_phases(work->arm_period_s, 3, [&](double begin, double end) {
-      return When{DriverWhen::of_arm_cycle, 100.0 * begin / work->arm_period_s, 100.0 * end / work->arm_period_s, {}};
+      return "from " + whole(100.0 * begin / work->arm_period_s) + " to " + whole(100.0 * end / work->arm_period_s) +
+             " % of the arm's cycle";
     });
   }
-  add_waves(times, longest_s);
+  constexpr std::array<double, 11> wave_periods_s{40, 45, 50, 56, 63, 71, 80, 90, 101, 113, 127};
+  constexpr int phases = 8;
+  for (const double period_s : wave_periods_s) {
+    for (int i = 0; i < phases && 1.5 * period_s <= longest_s; ++i) {
+      const double top_s = period_s * i / phases;
+      times.add("rising and falling every " + whole(period_s) + " s, most around second " + whole(top_s),
+                [=](double t, double) { return std::cos(2.0 * std::numbers::pi * (t - top_s) / period_s); });
+      times.all.back().is_wave = true;
+    }
+  }
   return std::move(times.all);
 }
-
-namespace {
 
 constexpr std::uint32_t first_residual_realization = 1U
                                                      << 22U;  ///< realizations that neither profile nor table has seen
@@ -422,7 +337,7 @@ constexpr double little = 0.05, much = 0.3;
 constexpr double least_information = 1.0;  ///< bits' worth of variance (assumed): one bit alone proves nothing
 
 /// One bit of a dataset.
-struct Place {
+struct BitPlace {
   std::size_t trial = 0, row = 0, sensor = 0;
 };
 
@@ -448,10 +363,9 @@ class Bits {
     std::vector<std::uint8_t> bits;
     for (const DataShape::Run& wanted : reference_.shape.runs) {
       const std::size_t size = std::min(wanted.n_main, profile.trials[wanted.trial].n_main) * n;
-      const auto run = std::ranges::find_if(
-          runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
+      const Series* run = run_of(runs, wanted);
       for (std::size_t i = 0; i < size; ++i) {
-        const bool there = run != runs.end() && run->main_begin * n + i < run->main_end * n;
+        const bool there = run != nullptr && run->main_begin * n + i < run->main_end * n;
         const bool moved = there && run->bits[run->main_begin * n + i] == 1;
         bits.push_back(moved && known[bits.size()] != 0 ? 1 : 0);
       }
@@ -459,7 +373,7 @@ class Bits {
     return bits;
   }
 
-  std::vector<Place> places;
+  std::vector<BitPlace> places;
   std::vector<double> chance, odds;  ///< that the plain model gives motion
   std::vector<std::uint8_t> known;
 
@@ -467,7 +381,7 @@ class Bits {
   const ReferenceStudy& reference_;
 };
 
-using How = ResidualDriver::How;
+enum class How { more, more_where_little, more_where_much, opposite, beside };
 
 struct Driver {
   std::size_t who = 0, when = 0;
@@ -488,7 +402,7 @@ class Scores {
     for (const auto& [how, other] : hows) {
       for (std::size_t when = 0; when < when_.size(); ++when) {
         const bool makes_sense =
-            how == How::beside ? when_[when].is_always() : how == How::more || !when_[when].is_wave();
+            how == How::beside ? when_[when].words.empty() : how == How::more || !when_[when].is_wave;
         for (std::size_t who = 0; who < who_.size(); ++who) drivers_.push_back({who, when, how, other, makes_sense});
       }
     }
@@ -499,7 +413,7 @@ class Scores {
 
   /// What the driver multiplies its coefficient with, at one place of a dataset.
   [[nodiscard]] double value(const Driver& driver, std::span<const std::uint8_t> bits, std::size_t place) const {
-    const Place& at = bits_.places[place];
+    const BitPlace& at = bits_.places[place];
     const std::size_t cell = reference_.frame.cell(at.trial, at.sensor);
     if (who_[driver.who].cells[cell] == 0) return 0.0;
     return when_[driver.when].weight[at.trial][at.row] * factor(driver.how, driver.other, bits, place);
@@ -542,8 +456,6 @@ class Scores {
       case How::opposite:
         return -bits_.odds[place];
       case How::beside:
-      case How::with_gaps:  // no drivers of single bits
-      case How::silent_together:
         break;
     }
     const std::size_t sensor = bits_.places[place].sensor;
@@ -557,7 +469,7 @@ class Scores {
       by_row[cell].assign(when_.front().weight[cell / n_sensors].size(), 0.0);
     for (std::size_t place = 0; place < bits_.places.size(); ++place) {
       if (bits_.known[place] == 0) continue;
-      const Place& at = bits_.places[place];
+      const BitPlace& at = bits_.places[place];
       const double f = factor(driver.how, driver.other, bits, place);
       by_row[at.trial * n_sensors + at.sensor][at.row] += residuals[place] * (power == Power::one ? f : f * f);
     }
@@ -572,13 +484,13 @@ class Scores {
 };
 
 /// What uncertain seats, sensors and bodies change most are levels; each kind of driver is compared with its own.
-enum Kind : std::size_t { level, time_of_run, neighbour, n_kinds };
+enum DriverKind : std::size_t { level, time_of_run, neighbour, n_kinds };
 
 /// How the scores of simulated datasets scatter.
 class Usual {
  public:
   /// simulated: (n_datasets x n_drivers); independent: (n_drivers) variances if all bits were independent.
-  Usual(std::vector<std::vector<double>> simulated, std::vector<double> independent, std::vector<Kind> kinds)
+  Usual(std::vector<std::vector<double>> simulated, std::vector<double> independent, std::vector<DriverKind> kinds)
       : simulated_(std::move(simulated)), independent_(std::move(independent)), kinds_(std::move(kinds)) {
     const std::size_t n = independent_.size();
     sum_.assign(n, 0.0);
@@ -637,7 +549,7 @@ class Usual {
 
   std::vector<std::vector<double>> simulated_;
   std::vector<double> independent_, sum_, squares_;
-  std::vector<Kind> kinds_;                              ///< (n_drivers)
+  std::vector<DriverKind> kinds_;                        ///< (n_drivers)
   std::array<std::vector<double>, n_kinds> greatest_{};  ///< (n_kinds x n_datasets)
   double dispersion_ = 1.0;                              ///< scatter over that of independent bits, of most drivers
 };
@@ -665,10 +577,29 @@ Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Sc
       [&](std::vector<double>& one) { simulated.push_back(std::move(one)); });
   std::vector<double> independent;
   for (const double p : bits.chance) independent.push_back(p * (1.0 - p));
-  std::vector<Kind> kinds;
+  std::vector<DriverKind> kinds;
   for (const Driver& driver : scores.drivers())
-    kinds.push_back(driver.how == How::beside ? neighbour : scores.when(driver).is_always() ? level : time_of_run);
+    kinds.push_back(driver.how == How::beside ? neighbour : scores.when(driver).words.empty() ? level : time_of_run);
   return {std::move(simulated), scores.sums(measured, independent, Scores::Power::two), std::move(kinds)};
+}
+
+std::string what_of(How how, double z, const std::string& other) {
+  const bool up = z > 0.0;
+  switch (how) {
+    case How::more:
+      return up ? "more motion than expected" : "less motion than expected";
+    case How::more_where_little:
+      return up ? "motion where hardly any is expected" : "still less motion where hardly any is expected";
+    case How::more_where_much:
+      return up ? "still more motion where much is expected" : "less motion where much is expected";
+    case How::opposite:
+      return up ? "the opposite of what is expected"
+                : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly "
+                  "never";
+    case How::beside:
+      break;
+  }
+  return (up ? "motion whenever " : "silence whenever ") + other + (up ? " sees some" : " sees motion");
 }
 
 /// The measured bits regressed on the drivers found so far.
@@ -686,7 +617,7 @@ class Regression {
     std::vector<int> cluster;
     for (std::size_t place = 0; place < measured_.size(); ++place) {
       if (bits_.known[place] == 0) continue;
-      columns.append_row(std::span<const double>(values(place)));
+      columns.append_row(values(place));
       outcomes.push_back(measured_[place]);
       offset.push_back(bits_.odds[place]);
       cluster.push_back(static_cast<int>(bits_.places[place].trial));
@@ -737,6 +668,65 @@ std::size_t strongest(const Usual& usual, const Scores& scores, const std::vecto
 
 }  // namespace
 
+ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std::span<const Series> runs) {
+  const std::size_t n = frame.sensors.size();
+  ContrastData data;
+  std::vector<Series> seen;
+  for (const DataShape::Run& wanted : shape.runs) {
+    std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n);
+    const Series* run = run_of(runs, wanted);
+    if (run == nullptr) continue;
+    Series& main = seen.emplace_back(*run);
+    main.main_end = std::min(main.main_end, main.main_begin + wanted.n_main);
+    const std::size_t first = main.main_begin * n;
+    for (std::size_t i = 0; i < std::min(wanted.unknown.size(), main.main_end * n - first); ++i) {
+      if (wanted.unknown[i] != 0) main.bits[first + i] = unknown_bit;
+    }
+    const std::vector<Gaps> own = gaps_of(main, n);
+    for (std::size_t s = 0; s < n; ++s) {
+      gaps[0].awaited += own[s].awaited;
+      gaps[0].silent += own[s].silent;
+      gaps[1 + s] = own[s];
+    }
+  }
+  data.joint_silence = joint_silence(seen, n).log_ratio();
+  return data;
+}
+
+std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const DataShape& shape,
+                                              const ContrastData& measured, const std::vector<ContrastData>& simulated,
+                                              double alpha) {
+  std::vector<ResidualDriver> telling;
+  const auto look = [&](std::span<const ContrastWords> words, const auto& values_of) {
+    std::vector<std::vector<double>> usual;
+    for (const ContrastData& one : simulated) usual.push_back(values_of(one));
+    const auto found = strongest(words, values_of(measured), usual);
+    if (found && found->p <= alpha) telling.push_back(*found);
+  };
+  const Session session(frame, shape, simulated);
+  const auto look_at_session = [&](const auto& wanted) {
+    std::vector<const Contrast*> contrasts;
+    std::vector<ContrastWords> words;
+    for (const Contrast& contrast : session.contrasts()) {
+      if (!wanted(contrast)) continue;
+      contrasts.push_back(&contrast);
+      words.push_back(contrast.words);
+    }
+    look(words, [&](const ContrastData& data) {
+      std::vector<double> values;
+      for (const Contrast* contrast : contrasts) values.push_back(session.value(*contrast, data));
+      return values;
+    });
+  };
+  look_at_session([](const Contrast& contrast) { return contrast.column == 0; });
+  look_at_session([](const Contrast& contrast) { return contrast.column > 0; });
+  // Gaps at the same moments less often than by chance have no known cause.
+  const ContrastWords together{all_sensors, "", "silent at the same moments oftener than by chance", ""};
+  look(std::span(&together, 1), [](const ContrastData& data) { return std::vector<double>{data.joint_silence}; });
+  std::ranges::stable_sort(telling, std::ranges::greater{}, [](const ResidualDriver& d) { return std::abs(d.z); });
+  return telling;
+}
+
 Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured, double alpha,
                             const Context& context) {
   const Profile& profile = reference.table.profile;
@@ -754,21 +744,10 @@ Residuals explain_residuals(const ReferenceStudy& reference, const Measured& mea
     const Driver& driver = scores.drivers()[best];
     regression.add(driver);
     const Who& who = scores.who(driver);
-    const When& when = scores.when(driver);
-    result.drivers.push_back({who.who,
-                              who.name,
-                              when.when,
-                              when.from,
-                              when.to,
-                              driver.how,
-                              z > 0.0,
-                              reference.frame.sensors[driver.other],
-                              regression.log_odds(),
-                              regression.standard_error(),
-                              z,
-                              p,
-                              {},
-                              usual.least_p(best)});
+    std::string when = scores.when(driver).words;
+    if (!who.is_trial) when += (when.empty() ? "" : ", ") + std::string("whatever the seat");
+    result.drivers.push_back({who.words, std::move(when), what_of(driver.how, z, reference.frame.sensors[driver.other]),
+                              regression.log_odds(), regression.standard_error(), z, p, usual.least_p(best)});
   }
   return result;
 }

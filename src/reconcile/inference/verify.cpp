@@ -113,74 +113,55 @@ struct HeldOutEnsembles {
   stats::Matrix<float> before, after, placebo;
 };
 
-class Simulation {
- public:
-  Simulation(const ReferenceStudy& reference, const Folds& folds, const std::vector<FoldPatches>& found)
-      : reference_(reference), folds_(folds), found_(found) {}
-
-  /// None if people can hardly get about with the patches.
-  [[nodiscard]] std::optional<HeldOutEnsembles> run(const VerifySettings& settings, unsigned threads) const {
-    using Rows = std::vector<std::vector<float>>;  // before, after, placebo
-    HeldOutEnsembles all;
-    ordered_parallel<Rows>(
-        std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), threads,
-        [&](std::size_t i) -> Rows {
-          const SimulatedRealization realization(reference_.source, reference_.frame,
-                                                 first_verify_realization + static_cast<std::uint32_t>(i),
-                                                 reference_.shape.n_replicates);
-          const auto after = patched(realization);
-          if (!after) return {};
-          return {statistics_of(realization.plain(0, reference_.shape.n_replicates)), statistics_of(*after),
-                  statistics_of(with_placebos(realization))};
-        },
-        [&](Rows& rows) {
-          if (rows.empty()) return;
-          all.before.append_row(std::span<const float>(rows[0]));
-          all.after.append_row(std::span<const float>(rows[1]));
-          all.placebo.append_row(std::span<const float>(rows[2]));
-        });
-    if (all.after.rows() < 2) return std::nullopt;
-    return all;
-  }
-
- private:
-  [[nodiscard]] std::vector<float> statistics_of(const std::vector<Series>& runs) const {
-    return reconcile::statistics_of(reference_.frame, reference_.shape, reference_.table.profile, runs);
-  }
-  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedRealization& realization) const {
+/// None if people can hardly get about with the patches.
+std::optional<HeldOutEnsembles> simulate(const ReferenceStudy& reference, const Folds& folds,
+                                         const std::vector<FoldPatches>& found, const VerifySettings& settings,
+                                         unsigned threads) {
+  const int n = reference.shape.n_replicates;
+  const auto statistics = [&](const std::vector<Series>& runs) {
+    return statistics_of(reference.frame, reference.shape, reference.table.profile, runs);
+  };
+  const auto in_folds = [&](const SimulatedRealization& realization,
+                            Patch FoldPatches::*which) -> std::optional<std::vector<Series>> {
     std::vector<Series> all;
-    for (std::size_t f = 0; f < folds_.size(); ++f) {
-      auto own = realization.with_effects(found_[f].patch, 0, reference_.shape.n_replicates, folds_[f]);
+    for (std::size_t f = 0; f < folds.size(); ++f) {
+      auto own = realization.with_effects(found[f].*which, 0, n, folds[f]);
+      // A placebo with which people can't get about explains nothing: the plain model is taken in that fold.
+      if (!own && which == &FoldPatches::placebo) own = realization.with_effects({}, 0, n, folds[f]);
       if (!own) return std::nullopt;
       std::ranges::move(*own, std::back_inserter(all));
     }
     return all;
-  }
-  /// A placebo with which people can't get about explains nothing: the plain model is taken in that fold.
-  [[nodiscard]] std::vector<Series> with_placebos(const SimulatedRealization& realization) const {
-    std::vector<Series> all;
-    for (std::size_t f = 0; f < folds_.size(); ++f) {
-      auto own = realization.with_effects(found_[f].placebo, 0, reference_.shape.n_replicates, folds_[f]);
-      if (!own) own = realization.with_effects({}, 0, reference_.shape.n_replicates, folds_[f]);
-      std::ranges::move(*own, std::back_inserter(all));
-    }
-    return all;
-  }
-
-  const ReferenceStudy& reference_;
-  const Folds& folds_;
-  const std::vector<FoldPatches>& found_;
-};
+  };
+  using Rows = std::vector<std::vector<float>>;  // before, after, placebo
+  HeldOutEnsembles all;
+  ordered_parallel<Rows>(
+      std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), threads,
+      [&](std::size_t i) -> Rows {
+        const SimulatedRealization realization(reference.source, reference.frame,
+                                               first_verify_realization + static_cast<std::uint32_t>(i), n);
+        const auto after = in_folds(realization, &FoldPatches::patch);
+        if (!after) return {};
+        return {statistics(realization.plain(0, n)), statistics(*after),
+                statistics(*in_folds(realization, &FoldPatches::placebo))};
+      },
+      [&](Rows& rows) {
+        if (rows.empty()) return;
+        all.before.append_row(rows[0]);
+        all.after.append_row(rows[1]);
+        all.placebo.append_row(rows[2]);
+      });
+  if (all.after.rows() < 2) return std::nullopt;
+  return all;
+}
 
 /// Mean energy score of an ensemble's own members, each against the others.
 double own_score(const stats::Matrix<double>& ensemble) {
   double sum = 0.0;
   const std::size_t n = std::min(most_own_scores, ensemble.rows());
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<std::size_t> others;
-    for (std::size_t row = 0; row < ensemble.rows(); ++row) {
-      if (row != i) others.push_back(row);
-    }
+    std::vector<std::size_t> others = stats::numbers_to(ensemble.rows());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     sum += stats::energy_score(ensemble.select_rows(others), ensemble.row(i)) / static_cast<double>(n);
   }
   return sum;
@@ -207,14 +188,15 @@ class Judge {
         measured_(plain.observed),
         ensembles_(ensembles),
         alpha_(alpha),
-        context_(context),
-        scales_(reference_.table.statistics.select_rows(rows_of(reference_.table, 0, Part::training))) {}
+        context_(context) {}
 
   void add_trial(std::size_t trial, Verification& result) {
-    const FeatureMap map(reference_.frame, reference_.knowledge, scales_, {trial});
+    const FeatureMap map = reference_.map({trial});
     if (map.envelope_columns().empty()) return;
-    const auto tested = [&](const stats::Matrix<float>& all) { return tested_statistics(map, all, context_.threads); };
-    const std::vector<double> real = tested_statistics(map, measured_);
+    const auto tested = [&](const stats::Matrix<float>& all) {
+      return tested_features(map, map.features(all, context_.threads));
+    };
+    const std::vector<double> real = tested_features(map, map.features(measured_));
     const stats::Matrix<double> after = tested(ensembles_.after);
     const double score_before = stats::energy_score(tested(ensembles_.before), real);
     const double score_after = stats::energy_score(after, real);
@@ -234,7 +216,7 @@ class Judge {
       *sum /= n;
     for (Gap* gap : {&result.before, &result.after})
       gap->area_s /= static_cast<double>(std::max<std::size_t>(1, gap->n_cells));
-    const FeatureMap map(reference_.frame, reference_.knowledge, scales_, held_out);
+    const FeatureMap map = reference_.map(held_out);
     const auto test = [&](const stats::Matrix<float>& ensemble, Gap& gap) {
       const Location seen = locate(reference_.frame, map, ensemble, measured_, alpha_, context_);
       gap.p = seen.p;
@@ -257,7 +239,6 @@ class Judge {
   const HeldOutEnsembles& ensembles_;
   double alpha_;
   const Context& context_;
-  stats::Matrix<float> scales_;
   std::vector<double> drops_;
 };
 
@@ -272,8 +253,7 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
     result.patches.push_back(fold.patch);
     if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
   }
-  const std::optional<HeldOutEnsembles> ensembles =
-      Simulation(*plain.reference, folds, found).run(settings, context.threads);
+  const std::optional<HeldOutEnsembles> ensembles = simulate(*plain.reference, folds, found, settings, context.threads);
   if (!ensembles) return result;
   Judge judge(plain, *ensembles, settings.alpha, context);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);

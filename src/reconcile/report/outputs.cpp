@@ -31,7 +31,7 @@ Json to_json(const Location& location) {
                      {"adjusted_p", cell.adjusted_p}});
   }
   for (const EnvelopeFeature& feature : location.envelope) {
-    envelope.push_back({{"feature", in_words(feature.name)},
+    envelope.push_back({{"feature", feature.name.text},
                         {"observed", feature.observed},
                         {"median", feature.median},
                         {"envelope", {feature.lower, feature.upper}},
@@ -121,9 +121,9 @@ Json to_json(const RangeEnd& end) {
 Json to_json(const Residuals& residuals, const std::string& sentence) {
   Json drivers = Json::array();
   for (const ResidualDriver& driver : residuals.drivers) {
-    drivers.push_back({{"who", who_of(driver)},
-                       {"when", when_of(driver)},
-                       {"what", what_of(driver)},
+    drivers.push_back({{"who", driver.who},
+                       {"when", driver.when},
+                       {"what", driver.what},
                        {"log_odds", driver.log_odds},
                        {"standard_error", driver.standard_error},
                        {"z", driver.z},
@@ -134,7 +134,7 @@ Json to_json(const Residuals& residuals, const std::string& sentence) {
 
 Json to_json(const DataFinding& finding) {
   Json places = Json::array();
-  for (const DataFinding::Place& place : finding.places)
+  for (const DataFinding::Rows& place : finding.places)
     places.push_back({{"trial", place.trial}, {"run", place.replicate}, {"rows", {place.from_row, place.to_row}}});
   return {{"kind", name(finding.what)},
           {"impossible", finding.is_impossible},
@@ -147,13 +147,69 @@ Json to_json(const DataFinding& finding) {
           {"sentence", in_words(finding)}};
 }
 
+constexpr Column<LocatedCell> located_cells[]{
+    {{"trial", Holds::text, "as the script names it"}, [](const LocatedCell& cell) -> Cell { return cell.trial; }},
+    {{"sensor", Holds::text, "as the scene names it"}, [](const LocatedCell& cell) -> Cell { return cell.sensor; }},
+    {{"measured_s", Holds::number, "seconds with motion a run", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.measured_s; }},
+    {{"expected_s", Holds::number, "mean of the simulated datasets", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.expected_s; }},
+    {{"difference_s", Holds::number, "measured less expected", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.measured_s - cell.expected_s; }},
+    {{"low_s", Holds::number, "2.5 % of the simulated datasets lie below", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.low_s; }},
+    {{"high_s", Holds::number, "2.5 % of the simulated datasets lie above", "s"},
+     [](const LocatedCell& cell) -> Cell { return cell.high_s; }},
+    {{"adjusted_p", Holds::number, "below alpha, the cell differs whatever the others do"},
+     [](const LocatedCell& cell) -> Cell { return cell.adjusted_p; }},
+};
+
+struct CandidateLine {
+  const Candidate& candidate;
+  std::string reason;
+};
+
+constexpr Column<CandidateLine> candidate_lines[]{
+    {{"effect", Holds::text, "its name"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.hypothesis; }},
+    {{"family", Holds::text, "its family"},
+     [](const CandidateLine& line) -> Cell { return name(line.candidate.family); }},
+    {{"kept", Holds::bit, "1 if it isn't ruled out"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.kept ? 1 : 0; }},
+    {{"probability", Holds::number, "among all effects, each as likely as the others beforehand"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.probability; }},
+    {{"p", Holds::number, "of the next two: twice the smaller, at most 1"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p; }},
+    {{"p_relative", Holds::number, "share of its own datasets that another effect explains as well"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_relative; }},
+    {{"p_absolute", Holds::number, "share of its own datasets that lie as far from the rest of them"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_absolute; }},
+    {{"p_own", Holds::number, "share of its own datasets that look as much like those of an unknown effect"},
+     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_own; }},
+    {{"reason", Holds::text, "why it was kept or ruled out"},
+     [](const CandidateLine& line) -> Cell { return line.reason; }},
+};
+
+std::string where_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  io::TableWriter<LocatedCell> csv(out, std::span<const Column<LocatedCell>>(located_cells));
+  for (const LocatedCell& cell : outcome.location.cells) csv.write(cell);
+  return out.str();
+}
+
+std::string candidates_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  io::TableWriter<CandidateLine> csv(out, std::span<const Column<CandidateLine>>(candidate_lines));
+  for (const Candidate& candidate : with_twins(outcome.candidates)) csv.write({candidate, in_words(candidate)});
+  return out.str();
+}
+
 }  // namespace
 
 std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings, const Context& context,
                     const Provenance& provenance) {
-  std::vector<std::string> notes;
-  for (const DataNote& note : measured.notes) notes.push_back(in_words(note));
-  for (const DataNote& note : outcome.notes) notes.push_back(in_words(note));
+  std::vector<std::string> notes = measured.notes;
+  notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
   Json nuisance;
   each_number(settings.nuisance, [&](const char* key, double width, const auto&) { nuisance[key] = width; });
   Json json = {{"pirsim_reconcile_report", report_schema},
@@ -199,89 +255,10 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, sentence(*outcome.residuals)) : Json();
   json["left_over"] = outcome.left_over ? to_json(*outcome.left_over, sentence_of_rest(*outcome.left_over)) : Json();
   json["telling_features"] = Json::array();
-  for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(in_words(feature));
+  for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(feature.text);
   json["calibration_error"] = outcome.calibration_error;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
-
-namespace {
-
-constexpr Column<LocatedCell> located_cells[]{
-    {{"trial", Holds::text, "as the script names it"}, [](const LocatedCell& cell) -> Cell { return cell.trial; }},
-    {{"sensor", Holds::text, "as the scene names it"}, [](const LocatedCell& cell) -> Cell { return cell.sensor; }},
-    {{"measured_s", Holds::number, "seconds with motion a run", "s"},
-     [](const LocatedCell& cell) -> Cell { return cell.measured_s; }},
-    {{"expected_s", Holds::number, "mean of the simulated datasets", "s"},
-     [](const LocatedCell& cell) -> Cell { return cell.expected_s; }},
-    {{"difference_s", Holds::number, "measured less expected", "s"},
-     [](const LocatedCell& cell) -> Cell { return cell.measured_s - cell.expected_s; }},
-    {{"low_s", Holds::number, "2.5 % of the simulated datasets lie below", "s"},
-     [](const LocatedCell& cell) -> Cell { return cell.low_s; }},
-    {{"high_s", Holds::number, "2.5 % of the simulated datasets lie above", "s"},
-     [](const LocatedCell& cell) -> Cell { return cell.high_s; }},
-    {{"adjusted_p", Holds::number, "below alpha, the cell differs whatever the others do"},
-     [](const LocatedCell& cell) -> Cell { return cell.adjusted_p; }},
-};
-
-struct CandidateLine {
-  const Candidate& candidate;
-  std::string reason;
-};
-
-constexpr Column<CandidateLine> candidate_lines[]{
-    {{"effect", Holds::text, "its name"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.hypothesis; }},
-    {{"family", Holds::text, "its family"},
-     [](const CandidateLine& line) -> Cell { return name(line.candidate.family); }},
-    {{"kept", Holds::bit, "1 if it isn't ruled out"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.kept ? 1 : 0; }},
-    {{"probability", Holds::number, "among all effects, each as likely as the others beforehand"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.probability; }},
-    {{"p", Holds::number, "of the next two: twice the smaller, at most 1"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.p; }},
-    {{"p_relative", Holds::number, "share of its own datasets that another effect explains as well"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_relative; }},
-    {{"p_absolute", Holds::number, "share of its own datasets that lie as far from the rest of them"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_absolute; }},
-    {{"p_own", Holds::number, "share of its own datasets that look as much like those of an unknown effect"},
-     [](const CandidateLine& line) -> Cell { return line.candidate.score.p_own; }},
-    {{"reason", Holds::text, "why it was kept or ruled out"},
-     [](const CandidateLine& line) -> Cell { return line.reason; }},
-};
-
-}  // namespace
-
-std::string where_csv(const Outcome& outcome) {
-  std::ostringstream out;
-  io::TableWriter<LocatedCell> csv(out, std::span<const Column<LocatedCell>>(located_cells));
-  for (const LocatedCell& cell : outcome.location.cells) csv.write(cell);
-  return out.str();
-}
-
-std::string candidates_csv(const Outcome& outcome) {
-  std::ostringstream out;
-  io::TableWriter<CandidateLine> csv(out, std::span<const Column<CandidateLine>>(candidate_lines));
-  for (const Candidate& candidate : with_twins(outcome.candidates)) csv.write({candidate, in_words(candidate)});
-  return out.str();
-}
-
-namespace {
-
-/// What is in the folder's trail already; it is never overwritten.
-std::string earlier_trail(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "trail.log";
-  return std::filesystem::exists(file) ? io::read_text_file(file) : std::string();
-}
-
-/// Each analysis begins its trail with the data's digest.
-std::size_t times_analysed(const std::string& trail, const std::string& digest) {
-  std::size_t times = 0;
-  std::istringstream lines(trail);
-  for (std::string line; std::getline(lines, line);) times += line.starts_with("data " + digest) ? 1 : 0;
-  return times;
-}
-
-}  // namespace
 
 ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
   ScriptSpec with = script;
@@ -303,16 +280,20 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   } else {
     std::filesystem::remove(patch, fault);  // of an earlier analysis
   }
-  std::string trail = earlier_trail(folder);
-  const std::size_t before = times_analysed(trail, measured.digest);
+  // What is in the folder's trail already is never overwritten. Each analysis begins with the data's digest.
+  const std::filesystem::path trail_file = folder / "trail.log";
+  std::string trail = std::filesystem::exists(trail_file) ? io::read_text_file(trail_file) : std::string();
+  std::size_t before = 0;
+  std::istringstream lines(trail);
+  for (std::string line; std::getline(lines, line);) before += line.starts_with("data " + measured.digest) ? 1 : 0;
   if (!trail.empty()) trail += '\n';
-  for (const TrailEvent& event : outcome.trail) trail += in_words(event) + '\n';
-  trail += "these data were analysed " + counted(static_cast<std::size_t>(before), "time") + " before in this folder\n";
-  io::write_text_file(folder / "trail.log", trail);
+  for (const std::string& line : outcome.trail) trail += line + '\n';
+  trail += "these data were analysed " + counted(before, "time") + " before in this folder\n";
+  io::write_text_file(trail_file, trail);
   const std::vector<std::string>& phases = script.summary.phases;
   const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};
   const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
-                        phases.empty() ? "" : phases.front(), units_of(script).empty()};
+                        phases.empty() ? "" : phases.front(), day_parts_of(script).empty()};
   io::Report page = report_page(outcome, watched);
   if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {
     page.paragraphs.push_back("For this analysis the plain model was simulated " +

@@ -32,7 +32,7 @@ io::BarChart gain_chart(const PlanResult& result) {
   for (std::size_t i = 1; i < result.designs.size(); ++i) {
     const Design& d = result.designs[i];
     chart.bars.push_back(
-        {what_of(d), d.more_bits, short_number(d.more_bits) + " bits in " + short_number(d.minutes) + " min",
+        {d.what, d.more_bits, short_number(d.more_bits) + " bits in " + short_number(d.minutes) + " min",
          d.more_bits_95.low > 0.0 ? io::BarChart::Weight::strong : io::BarChart::Weight::faint, d.more_bits_95.low,
          d.more_bits_95.high,
          "right effect the likeliest in " + percent(d.right) + "\n" +
@@ -65,111 +65,21 @@ io::GridChart confusion_chart(const PlanResult& result) {
   return chart;
 }
 
-}  // namespace
-
-io::Report plan_page(const PlanResult& result) {
-  io::Report report;
-  report.title = "What to measure";
-  report.finding = sentence(result);
-  report.paragraphs = {
-      "Everything here comes from simulation, before any measuring: every effect of the catalogue in "
-      "many rooms like this one, and what the data would then say. " +
-      std::to_string(result.n_datasets) + " datasets that took no part in training were judged."};
-  for (const LeftOut& left_out : result.left_out) report.paragraphs.push_back(in_words(left_out));
-  io::ReportSection gain{"What to measure next", {}, {}, {}};
-  gain.charts.emplace_back(gain_chart(result));
-  io::ReportSection table{"The same in numbers", {}, {}, {}};
-  io::Table numbers{
-      {"measured", "min", "right effect the likeliest", "bits", "bits more", "95 %", "bits more a minute"}, {}};
-  for (const Design& d : result.designs) {
-    const bool planned = &d == &result.designs.front();
-    numbers.rows.push_back({what_of(d), short_number(d.minutes), percent(d.right), fixed(d.bits, 2),
-                            planned ? "" : fixed(d.more_bits, 2),
-                            planned ? "" : fixed(d.more_bits_95.low, 2) + " to " + fixed(d.more_bits_95.high, 2),
-                            planned           ? ""
-                            : d.minutes > 0.0 ? short_number(d.more_bits / d.minutes)
-                                              : "takes no time"});
-  }
-  table.tables.push_back(std::move(numbers));
-  io::ReportSection seen{"What would be seen at all", {}, {}, {}};
-  seen.charts.emplace_back(power_grid(result));
-  io::ReportSection confused{"What would be taken for what", {}, {}, {}};
-  confused.charts.emplace_back(confusion_chart(result));
-  report.sections = {std::move(gain), std::move(table), std::move(seen), std::move(confused)};
-  return report;
-}
-
-std::string to_json(const PlanResult& result) {
-  Json designs = Json::array(), power = Json::array();
-  for (const Design& d : result.designs) {
-    designs.push_back({{"name", name(d)},
-                       {"what", what_of(d)},
-                       {"minutes", d.minutes},
-                       {"bits", d.bits},
-                       {"right", d.right},
-                       {"more_bits", d.more_bits},
-                       {"more_bits_95", {d.more_bits_95.low, d.more_bits_95.high}}});
-  }
-  for (const PlannedPower& one : result.power) {
-    power.push_back(
-        {{"effect", one.effect}, {"strength", name(one.strength)}, {"seen", one.seen.hits}, {"of", one.seen.of}});
-  }
-  Json notes = Json::array();
-  for (const LeftOut& left_out : result.left_out) notes.push_back(in_words(left_out));
-  const Json json{{"pirsim_reconcile_plan", 1},
-                  {"sentence", sentence(result)},
-                  {"designs", designs},
-                  {"power", power},
-                  {"hypotheses", result.hypotheses},
-                  {"confusion", result.confusion},
-                  {"datasets", result.n_datasets},
-                  {"notes", notes}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-namespace {
-
-struct DesignLine {
-  const Design& design;
-  std::string name;
-};
-
-constexpr Column<DesignLine> design_lines[]{
-    {{"design", Holds::text, "what would be measured"}, [](const DesignLine& line) -> Cell { return line.name; }},
+constexpr Column<Design> design_columns[]{
+    {{"design", Holds::text, "what would be measured"}, [](const Design& design) -> Cell { return design.name; }},
     {{"minutes", Holds::number, "more than what is planned; of the plan itself all of it", "min"},
-     [](const DesignLine& line) -> Cell { return line.design.minutes; }},
+     [](const Design& design) -> Cell { return design.minutes; }},
     {{"bits", Holds::number, "told about which effect it is, mean over datasets"},
-     [](const DesignLine& line) -> Cell { return line.design.bits; }},
+     [](const Design& design) -> Cell { return design.bits; }},
     {{"right", Holds::number, "share of datasets whose effect is the likeliest"},
-     [](const DesignLine& line) -> Cell { return line.design.right; }},
+     [](const Design& design) -> Cell { return design.right; }},
     {{"more_bits", Holds::number, "than what is planned"},
-     [](const DesignLine& line) -> Cell { return line.design.more_bits; }},
+     [](const Design& design) -> Cell { return design.more_bits; }},
     {{"more_bits_low", Holds::number, "low end of their 95 % interval"},
-     [](const DesignLine& line) -> Cell { return line.design.more_bits_95.low; }},
+     [](const Design& design) -> Cell { return design.more_bits_95.low; }},
     {{"more_bits_high", Holds::number, "high end of their 95 % interval"},
-     [](const DesignLine& line) -> Cell { return line.design.more_bits_95.high; }},
+     [](const Design& design) -> Cell { return design.more_bits_95.high; }},
 };
-
-}  // namespace
-
-std::string to_csv(const PlanResult& result) {
-  std::ostringstream out;
-  io::TableWriter<DesignLine> csv(out, std::span<const Column<DesignLine>>(design_lines));
-  for (const Design& design : result.designs) csv.write({design, name(design)});
-  return out.str();
-}
-
-void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by) {
-  std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  io::Report page = plan_page(result);
-  page.footer = made_by;
-  io::write_text_file(folder / "plan.csv", to_csv(result));
-  io::write_text_file(folder / "plan.html", io::to_html(page));
-  io::write_text_file(folder / "plan.json", to_json(result));
-}
-
-namespace {
 
 std::string with_sign(double value) {
   const std::string text = fixed(value, 0);
@@ -201,231 +111,6 @@ double beside_band(const EnvelopeFeature& feature) {
   if (half > 0.0) return std::clamp(d / half, -beyond_any_limit, beyond_any_limit);
   return d == 0.0 ? 0.0 : std::copysign(beyond_any_limit, d);
 }
-
-/// What is measured, whoever's it is: a row of the picture.
-std::string subject_of(const FeatureName& feature) {
-  if (feature.kind == FeatureName::Kind::share_of_time) return "how motion spreads over the time";
-  if (feature.kind == FeatureName::Kind::together) return "motion while another sensor moves";
-  return in_plain_words(feature.statistic);
-}
-
-std::string place_of(const FeatureName& feature) {
-  switch (feature.kind) {
-    case FeatureName::Kind::cell:
-      return feature.trial + " " + feature.sensor;
-    case FeatureName::Kind::sensor:
-      return feature.sensor;
-    case FeatureName::Kind::mean:
-      return "all cells, mean";
-    case FeatureName::Kind::size:
-      return "all cells, mean size of the differences";
-    default:
-      return in_words(feature);
-  }
-}
-
-}  // namespace
-
-std::string in_plain_words(const std::string& statistic) {
-  static const std::map<std::string, std::string> words{{"seconds", "seconds with motion"},
-                                                        {"busy_seconds", "motion when people change posture"},
-                                                        {"silent_seconds", "motion when silence is expected"},
-                                                        {"half_difference", "first half less second half"},
-                                                        {"onsets", "how often motion begins"},
-                                                        {"longest_run", "longest stretch of motion"},
-                                                        {"isolated", "single seconds with motion"},
-                                                        {"single_gaps", "gaps of one second"},
-                                                        {"double_gaps", "gaps of two seconds"},
-                                                        {"longest_gap", "longest silence"},
-                                                        {"dispersion", "motion comes in clumps"},
-                                                        {"period_power", "motion comes periodically"},
-                                                        {"cycle_strength", "motion keeps time with the arms"},
-                                                        {"agreement", "motion comes when expected"},
-                                                        {"shift_s", "motion comes later than expected"},
-                                                        {"lead_seconds", "motion before the main part"},
-                                                        {"tail_seconds", "motion after the main part"},
-                                                        {"late_tail_seconds", "motion long after the main part"},
-                                                        {"run_variance", "runs differ from one another"}};
-  if (const auto found = words.find(statistic); found != words.end()) return found->second;
-  constexpr std::string_view again = "again_after_";
-  if (statistic.starts_with(again)) return "motion again " + statistic.substr(again.size()) + " s later";
-  constexpr std::string_view sixth = "sixth_";
-  if (statistic.starts_with(sixth)) return "motion in part " + statistic.substr(sixth.size()) + " of 6";
-  std::string text = statistic;
-  std::ranges::replace(text, '_', ' ');
-  return text;
-}
-
-io::GridChart difference_chart(const Location& location, double alpha) {
-  io::GridChart chart;
-  chart.title = "Measured less expected, seconds with motion";
-  chart.note =
-      "Orange: more motion was measured than the model expects; blue: less. A frame marks differences that chance and "
-      "an inexactly known room don't explain.";
-  chart.label = "seconds";
-  chart.rows = distinct(location.cells, &LocatedCell::trial);
-  chart.columns = distinct(location.cells, &LocatedCell::sensor);
-  chart.colours = io::GridChart::Colours::about_zero;
-  chart.max = 1.0;
-  for (const std::string& trial : chart.rows) {
-    for (const std::string& sensor : chart.columns) {
-      const auto cell = std::ranges::find_if(
-          location.cells, [&](const LocatedCell& c) { return c.trial == trial && c.sensor == sensor; });
-      chart.cells.push_back(cell == location.cells.end()
-                                ? io::GridChart::Cell{{}, "not measured", {}, io::GridChart::Mark::none}
-                                : square(*cell, alpha));
-      if (chart.cells.back().value) chart.max = std::max(chart.max, std::abs(*chart.cells.back().value));
-    }
-  }
-  return chart;
-}
-
-io::BandChart envelope_chart(const Location& location, double alpha) {
-  io::BandChart chart;
-  chart.title = "All that was compared";
-  chart.note =
-      "Each dot is a number taken from the data, of one sensor or of all. The grey band holds what the model gives. "
-      "Red dots lie outside: there the model is wrong. Point at a dot to see what it is.";
-  chart.low = "less than the model";
-  chart.high = "more than the model";
-  chart.label = "deviation, in half-widths of the band";
-  std::map<std::string, std::size_t> row_of;
-  for (const EnvelopeFeature& feature : location.envelope) {
-    const std::string subject = subject_of(feature.name);
-    const auto [row, is_new] = row_of.try_emplace(subject, chart.rows.size());
-    if (is_new) chart.rows.push_back({subject, {}});
-    const bool outside = feature.adjusted_p <= alpha;
-    chart.rows[row->second].points.push_back(
-        {beside_band(feature),
-         place_of(feature.name) + "\n" + subject + "\n" + (outside ? "outside" : "inside") + " the band, adjusted p " +
-             short_number(feature.adjusted_p),
-         outside ? io::BandChart::Point::Mark::outside : io::BandChart::Point::Mark::inside});
-  }
-  return chart;
-}
-
-io::BarChart ranking_chart(const Outcome& outcome) {
-  io::BarChart chart;
-  chart.title = "Which effect explains the data best";
-  chart.note =
-      "Long bars: likelier than the others. That alone decides nothing: only effects that can also make such data by "
-      "themselves are kept (coloured).";
-  chart.label = "probability among all hypotheses of the catalogue";
-  constexpr double worth_drawing = 0.005;
-  std::size_t left_out = 0;
-  for (const Candidate& candidate : outcome.candidates) {
-    const HypothesisScore& score = candidate.score;
-    if (!candidate.kept && score.probability < worth_drawing) {
-      ++left_out;
-      continue;
-    }
-    chart.bars.push_back({score.hypothesis,
-                          score.probability,
-                          percent(score.probability) + (candidate.kept ? ", kept" : ""),
-                          candidate.kept ? io::BarChart::Weight::strong : io::BarChart::Weight::faint,
-                          {},
-                          {},
-                          in_words(candidate)});
-  }
-  if (left_out > 0) chart.note += " " + std::to_string(left_out) + " effects below 0.5 % are not drawn.";
-  return chart;
-}
-
-std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted, const std::optional<RangeEnd>& end) {
-  std::vector<io::DotsChart> charts;
-  for (const FittedParameter& p : fitted.parameters) {
-    const auto& infos = effects::find(fitted.effect.name).info.parameters;
-    const auto info = std::ranges::find(infos, p.name, &effects::ParameterInfo::name);
-    if (info == infos.end() || p.equally_likely.empty()) continue;
-    io::DotsChart chart;
-    chart.title = fitted.effect.name + ": " + p.name;
-    const bool stepped = end && end->found && end->effect == fitted.effect.name && end->parameter == p.name;
-    chart.note = stepped
-                     ? "Each dot is a strength that was tried beyond the range looked for and with which the model can "
-                       "have made the data. The shaded range spans them."
-                     : "Each dot is as likely as any other to be the truth; in about nine cases of ten the truth lies "
-                       "in the shaded range. The axis spans what was thought possible.";
-    chart.label = p.unit;
-    chart.values = p.equally_likely;
-    chart.low = p.interval.low;
-    chart.high = p.interval.high;
-    chart.axis_low = info->low;
-    chart.axis_high = info->high;
-    chart.axis_low = std::min(chart.axis_low, chart.low);
-    chart.axis_high = std::max(chart.axis_high, chart.high);
-    if (info->scale == effects::Scale::logarithmic) {
-      chart.scale = io::DotsChart::Scale::logarithmic;
-    } else if (p.is_strength) {
-      chart.axis_low = std::min(chart.axis_low, p.off);
-      chart.axis_high = std::max(chart.axis_high, p.off);
-    }
-    if (p.is_strength) {
-      chart.reference = p.off;
-      chart.reference_label = "no effect";
-    }
-    charts.push_back(std::move(chart));
-  }
-  return charts;
-}
-
-io::BarChart held_out_chart(const Verification& v, const std::string& named) {
-  io::BarChart chart;
-  chart.title = "How far the model is from trials that it was not fitted on";
-  chart.note =
-      "Shorter is better. The last bar is what a right model comes to on average, since runs differ by chance; "
-      "single data may lie nearer or farther.";
-  chart.label = "distance (energy score)";
-  const auto add = [&](const std::string& name, double value, io::BarChart::Weight weight) {
-    chart.bars.push_back({name, value, fixed(value, 3), weight, {}, {}});
-  };
-  add("before: the model as it is", v.before.energy_score, io::BarChart::Weight::plain);
-  add("after: with " + named, v.after.energy_score, io::BarChart::Weight::strong);
-  if (!v.placebo_effect.empty()) {
-    add("placebo: with " + v.placebo_effect + " instead", v.placebo, io::BarChart::Weight::faint);
-  }
-  add("the new model against itself", v.noise_floor, io::BarChart::Weight::faint);
-  return chart;
-}
-
-std::string with_interval(const Rate& rate) {
-  if (rate.of == 0) return "no case";
-  return percent(rate.value()) + " (" + percent(rate.interval.low) + " to " + percent(rate.interval.high) + ", " +
-         std::to_string(rate.hits) + " of " + std::to_string(rate.of) + ")";
-}
-
-std::string calibration_error(const SelftestResult& result) {
-  return result.reliability.bins.empty() ? "no case" : fixed(result.reliability.expected_calibration_error, 3);
-}
-
-io::GridChart::Cell share_cell(const Rate& rate) {
-  io::GridChart::Cell cell;
-  cell.hint = with_interval(rate);
-  if (rate.of == 0) return cell;
-  cell.value = rate.value();
-  cell.text = fixed(100.0 * rate.value(), 0);
-  return cell;
-}
-
-io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
-                             const std::vector<std::vector<double>>& shares) {
-  constexpr double worth_a_number = 0.05;
-  io::GridChart chart;
-  chart.label = "share of a row";
-  chart.rows = chart.columns = hypotheses;
-  for (const std::vector<double>& row : shares) {
-    const bool any = std::ranges::any_of(row, [](double share) { return share > 0.0; });
-    for (const double share : row) {
-      io::GridChart::Cell cell;
-      if (any) cell.value = share;
-      if (share >= worth_a_number) cell.text = fixed(100.0 * share, 0);
-      cell.hint = any ? percent(share) : "no case";
-      chart.cells.push_back(std::move(cell));
-    }
-  }
-  return chart;
-}
-
-namespace {
 
 std::string count_of(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
 
@@ -571,6 +256,26 @@ std::string what_is_closed(const Verification& v) {
          " % of what can be closed is closed; how far two runs of the model are apart can't be.";
 }
 
+/// Distance of model and trials set aside: before, after, with another effect instead, and at best.
+io::BarChart held_out_chart(const Verification& v, const std::string& named) {
+  io::BarChart chart;
+  chart.title = "How far the model is from trials that it was not fitted on";
+  chart.note =
+      "Shorter is better. The last bar is what a right model comes to on average, since runs differ by chance; "
+      "single data may lie nearer or farther.";
+  chart.label = "distance (energy score)";
+  const auto add = [&](const std::string& name, double value, io::BarChart::Weight weight) {
+    chart.bars.push_back({name, value, fixed(value, 3), weight, {}, {}});
+  };
+  add("before: the model as it is", v.before.energy_score, io::BarChart::Weight::plain);
+  add("after: with " + named, v.after.energy_score, io::BarChart::Weight::strong);
+  if (!v.placebo_effect.empty()) {
+    add("placebo: with " + v.placebo_effect + " instead", v.placebo, io::BarChart::Weight::faint);
+  }
+  add("the new model against itself", v.noise_floor, io::BarChart::Weight::faint);
+  return chart;
+}
+
 io::ReportSection held_out(const Verification& v, const std::string& named) {
   io::ReportSection section{"Does it help", {}, {}, {}};
   section.paragraphs = {
@@ -590,7 +295,261 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
   return section;
 }
 
+/// A statistic's name for a reader who doesn't know the program.
+std::string in_plain_words(const std::string& statistic) {
+  static const std::map<std::string, std::string> words{{"seconds", "seconds with motion"},
+                                                        {"busy_seconds", "motion when people change posture"},
+                                                        {"silent_seconds", "motion when silence is expected"},
+                                                        {"half_difference", "first half less second half"},
+                                                        {"onsets", "how often motion begins"},
+                                                        {"longest_run", "longest stretch of motion"},
+                                                        {"isolated", "single seconds with motion"},
+                                                        {"single_gaps", "gaps of one second"},
+                                                        {"double_gaps", "gaps of two seconds"},
+                                                        {"longest_gap", "longest silence"},
+                                                        {"dispersion", "motion comes in clumps"},
+                                                        {"period_power", "motion comes periodically"},
+                                                        {"cycle_strength", "motion keeps time with the arms"},
+                                                        {"agreement", "motion comes when expected"},
+                                                        {"shift_s", "motion comes later than expected"},
+                                                        {"lead_seconds", "motion before the main part"},
+                                                        {"tail_seconds", "motion after the main part"},
+                                                        {"late_tail_seconds", "motion long after the main part"},
+                                                        {"run_variance", "runs differ from one another"},
+                                                        {"share_of_time", "how motion spreads over the time"},
+                                                        {"together", "motion while another sensor moves"}};
+  if (const auto found = words.find(statistic); found != words.end()) return found->second;
+  constexpr std::string_view again = "again_after_";
+  if (statistic.starts_with(again)) return "motion again " + statistic.substr(again.size()) + " s later";
+  constexpr std::string_view sixth = "sixth_";
+  if (statistic.starts_with(sixth)) return "motion in part " + statistic.substr(sixth.size()) + " of 6";
+  std::string text = statistic;
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
+std::string to_csv(const PlanResult& result) {
+  std::ostringstream out;
+  io::TableWriter<Design> csv(out, std::span<const Column<Design>>(design_columns));
+  for (const Design& design : result.designs) csv.write(design);
+  return out.str();
+}
+
 }  // namespace
+
+io::Report plan_page(const PlanResult& result) {
+  io::Report report;
+  report.title = "What to measure";
+  report.finding = sentence(result);
+  report.paragraphs = {
+      "Everything here comes from simulation, before any measuring: every effect of the catalogue in "
+      "many rooms like this one, and what the data would then say. " +
+      std::to_string(result.n_datasets) + " datasets that took no part in training were judged."};
+  report.paragraphs.insert(report.paragraphs.end(), result.left_out.begin(), result.left_out.end());
+  io::ReportSection gain{"What to measure next", {}, {}, {}};
+  gain.charts.emplace_back(gain_chart(result));
+  io::ReportSection table{"The same in numbers", {}, {}, {}};
+  io::Table numbers{
+      {"measured", "min", "right effect the likeliest", "bits", "bits more", "95 %", "bits more a minute"}, {}};
+  for (const Design& d : result.designs) {
+    const bool planned = &d == &result.designs.front();
+    numbers.rows.push_back({d.what, short_number(d.minutes), percent(d.right), fixed(d.bits, 2),
+                            planned ? "" : fixed(d.more_bits, 2),
+                            planned ? "" : fixed(d.more_bits_95.low, 2) + " to " + fixed(d.more_bits_95.high, 2),
+                            planned           ? ""
+                            : d.minutes > 0.0 ? short_number(d.more_bits / d.minutes)
+                                              : "takes no time"});
+  }
+  table.tables.push_back(std::move(numbers));
+  io::ReportSection seen{"What would be seen at all", {}, {}, {}};
+  seen.charts.emplace_back(power_grid(result));
+  io::ReportSection confused{"What would be taken for what", {}, {}, {}};
+  confused.charts.emplace_back(confusion_chart(result));
+  report.sections = {std::move(gain), std::move(table), std::move(seen), std::move(confused)};
+  return report;
+}
+
+std::string to_json(const PlanResult& result) {
+  Json designs = Json::array(), power = Json::array();
+  for (const Design& d : result.designs) {
+    designs.push_back({{"name", d.name},
+                       {"what", d.what},
+                       {"minutes", d.minutes},
+                       {"bits", d.bits},
+                       {"right", d.right},
+                       {"more_bits", d.more_bits},
+                       {"more_bits_95", {d.more_bits_95.low, d.more_bits_95.high}}});
+  }
+  for (const PlannedPower& one : result.power) {
+    power.push_back(
+        {{"effect", one.effect}, {"strength", name(one.strength)}, {"seen", one.seen.hits}, {"of", one.seen.of}});
+  }
+  const Json json{{"pirsim_reconcile_plan", 1},
+                  {"sentence", sentence(result)},
+                  {"designs", designs},
+                  {"power", power},
+                  {"hypotheses", result.hypotheses},
+                  {"confusion", result.confusion},
+                  {"datasets", result.n_datasets},
+                  {"notes", result.left_out}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  io::Report page = plan_page(result);
+  page.footer = made_by;
+  io::write_text_file(folder / "plan.csv", to_csv(result));
+  io::write_text_file(folder / "plan.html", io::to_html(page));
+  io::write_text_file(folder / "plan.json", to_json(result));
+}
+
+io::GridChart difference_chart(const Location& location, double alpha) {
+  io::GridChart chart;
+  chart.title = "Measured less expected, seconds with motion";
+  chart.note =
+      "Orange: more motion was measured than the model expects; blue: less. A frame marks differences that chance and "
+      "an inexactly known room don't explain.";
+  chart.label = "seconds";
+  chart.rows = distinct(location.cells, &LocatedCell::trial);
+  chart.columns = distinct(location.cells, &LocatedCell::sensor);
+  chart.colours = io::GridChart::Colours::about_zero;
+  chart.max = 1.0;
+  for (const std::string& trial : chart.rows) {
+    for (const std::string& sensor : chart.columns) {
+      const auto cell = std::ranges::find_if(
+          location.cells, [&](const LocatedCell& c) { return c.trial == trial && c.sensor == sensor; });
+      chart.cells.push_back(cell == location.cells.end()
+                                ? io::GridChart::Cell{{}, "not measured", {}, io::GridChart::Mark::none}
+                                : square(*cell, alpha));
+      if (chart.cells.back().value) chart.max = std::max(chart.max, std::abs(*chart.cells.back().value));
+    }
+  }
+  return chart;
+}
+
+io::BandChart envelope_chart(const Location& location, double alpha) {
+  io::BandChart chart;
+  chart.title = "All that was compared";
+  chart.note =
+      "Each dot is a number taken from the data, of one sensor or of all. The grey band holds what the model gives. "
+      "Red dots lie outside: there the model is wrong. Point at a dot to see what it is.";
+  chart.low = "less than the model";
+  chart.high = "more than the model";
+  chart.label = "deviation, in half-widths of the band";
+  std::map<std::string, std::size_t> row_of;
+  for (const EnvelopeFeature& feature : location.envelope) {
+    const auto& [text, statistic, place] = feature.name;
+    const std::string subject = in_plain_words(statistic);
+    const auto [row, is_new] = row_of.try_emplace(subject, chart.rows.size());
+    if (is_new) chart.rows.push_back({subject, {}});
+    const bool outside = feature.adjusted_p <= alpha;
+    chart.rows[row->second].points.push_back(
+        {beside_band(feature),
+         (place.empty() ? text : place) + "\n" + subject + "\n" + (outside ? "outside" : "inside") +
+             " the band, adjusted p " + short_number(feature.adjusted_p),
+         outside ? io::BandChart::Point::Mark::outside : io::BandChart::Point::Mark::inside});
+  }
+  return chart;
+}
+
+io::BarChart ranking_chart(const Outcome& outcome) {
+  io::BarChart chart;
+  chart.title = "Which effect explains the data best";
+  chart.note =
+      "Long bars: likelier than the others. That alone decides nothing: only effects that can also make such data by "
+      "themselves are kept (coloured).";
+  chart.label = "probability among all hypotheses of the catalogue";
+  constexpr double worth_drawing = 0.005;
+  std::size_t left_out = 0;
+  for (const Candidate& candidate : outcome.candidates) {
+    const HypothesisScore& score = candidate.score;
+    if (!candidate.kept && score.probability < worth_drawing) {
+      ++left_out;
+      continue;
+    }
+    chart.bars.push_back({score.hypothesis,
+                          score.probability,
+                          percent(score.probability) + (candidate.kept ? ", kept" : ""),
+                          candidate.kept ? io::BarChart::Weight::strong : io::BarChart::Weight::faint,
+                          {},
+                          {},
+                          in_words(candidate)});
+  }
+  if (left_out > 0) chart.note += " " + std::to_string(left_out) + " effects below 0.5 % are not drawn.";
+  return chart;
+}
+
+std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted, const std::optional<RangeEnd>& end) {
+  std::vector<io::DotsChart> charts;
+  for (const FittedParameter& p : fitted.parameters) {
+    const auto& infos = effects::find(fitted.effect.name).info.parameters;
+    const auto info = std::ranges::find(infos, p.name, &effects::ParameterInfo::name);
+    if (info == infos.end() || p.equally_likely.empty()) continue;
+    io::DotsChart chart;
+    chart.title = fitted.effect.name + ": " + p.name;
+    const bool stepped = end && end->found && end->effect == fitted.effect.name && end->parameter == p.name;
+    chart.note = stepped
+                     ? "Each dot is a strength that was tried beyond the range looked for and with which the model can "
+                       "have made the data. The shaded range spans them."
+                     : "Each dot is as likely as any other to be the truth; in about nine cases of ten the truth lies "
+                       "in the shaded range. The axis spans what was thought possible.";
+    chart.label = p.unit;
+    chart.values = p.equally_likely;
+    chart.low = p.interval.low;
+    chart.high = p.interval.high;
+    chart.axis_low = std::min(info->low, chart.low);
+    chart.axis_high = std::max(info->high, chart.high);
+    if (info->scale == effects::Scale::logarithmic) {
+      chart.scale = io::DotsChart::Scale::logarithmic;
+    } else if (p.is_strength) {
+      chart.axis_low = std::min(chart.axis_low, p.off);
+      chart.axis_high = std::max(chart.axis_high, p.off);
+    }
+    if (p.is_strength) {
+      chart.reference = p.off;
+      chart.reference_label = "no effect";
+    }
+    charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+std::string with_interval(const Rate& rate) {
+  if (rate.of == 0) return "no case";
+  const Interval interval = rate.interval();
+  return percent(rate.value()) + " (" + percent(interval.low) + " to " + percent(interval.high) + ", " +
+         std::to_string(rate.hits) + " of " + std::to_string(rate.of) + ")";
+}
+
+io::GridChart::Cell share_cell(const Rate& rate) {
+  io::GridChart::Cell cell;
+  cell.hint = with_interval(rate);
+  if (rate.of == 0) return cell;
+  cell.value = rate.value();
+  cell.text = fixed(100.0 * rate.value(), 0);
+  return cell;
+}
+
+io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
+                             const std::vector<std::vector<double>>& shares) {
+  constexpr double worth_a_number = 0.05;
+  io::GridChart chart;
+  chart.label = "share of a row";
+  chart.rows = chart.columns = hypotheses;
+  for (const std::vector<double>& row : shares) {
+    const bool any = std::ranges::any_of(row, [](double share) { return share > 0.0; });
+    for (const double share : row) {
+      io::GridChart::Cell cell;
+      if (any) cell.value = share;
+      if (share >= worth_a_number) cell.text = fixed(100.0 * share, 0);
+      cell.hint = any ? percent(share) : "no case";
+      chart.cells.push_back(std::move(cell));
+    }
+  }
+  return chart;
+}
 
 io::Report report_page(const Outcome& outcome, const Watched& watched) {
   if (!outcome.data_findings.empty()) {

@@ -24,35 +24,20 @@ namespace pirsim::reconcile {
 /// One a parameter: twenty equally likely values within the range looked at.
 [[nodiscard]] std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted,
                                                           const std::optional<RangeEnd>& end = {});
-/// Distance of model and trials set aside: before, after, with another effect instead, and at best.
-[[nodiscard]] io::BarChart held_out_chart(const Verification& verification, const std::string& named);
 
 /// Hypotheses by hypotheses: how often the column's was the likeliest where the row's was hidden.
 [[nodiscard]] io::GridChart confusion_chart(const SelftestResult& result);
 /// How often an effect is seen, and is then in the set, against its strength.
 [[nodiscard]] io::LineChart power_chart(const SelftestResult& result, const std::string& effect);
-/// How often each effect is seen against its strength, all in one picture.
-[[nodiscard]] io::GridChart power_grid(const SelftestResult& result);
-/// How often the likeliest hypothesis was right, against the probability that it was given.
-[[nodiscard]] io::LineChart reliability_chart(const SelftestResult& result);
-/// Effect by effect: how often the 90 % intervals hold the truth.
-[[nodiscard]] io::BarChart coverage_chart(const SelftestResult& result);
 
 /// "95 % (75 % to 100 %, 19 of 20)".
 [[nodiscard]] std::string with_interval(const Rate& rate);
-/// Of the probabilities, with three digits; "no case" if none was judged.
-[[nodiscard]] std::string calibration_error(const SelftestResult& result);
 /// A square with the share in percent; an empty one without any case.
 [[nodiscard]] io::GridChart::Cell share_cell(const Rate& rate);
 /// What was hidden (rows) against what it was taken for (columns). shares: (n_hypotheses x n_hypotheses) of each row; a
 /// row of zeros has no case and stays empty. Title and note are the caller's.
 [[nodiscard]] io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
                                            const std::vector<std::vector<double>>& shares);
-
-/// A statistic's name for a reader who doesn't know the program.
-[[nodiscard]] std::string in_plain_words(const std::string& statistic);
-
-// Results as pages for readers who know no statistics, and the files beside them (docs/formats/reconcile.md).
 
 /// How a reader gets at the runs in which a cell was counted.
 struct Watched {
@@ -67,19 +52,15 @@ struct Watched {
 
 [[nodiscard]] io::Report plan_page(const PlanResult& result);
 [[nodiscard]] std::string to_json(const PlanResult& result);
-[[nodiscard]] std::string to_csv(const PlanResult& result);  ///< a row a design
 /// plan.html, plan.json, plan.csv; the folder is made. Throws Error(io).
 void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by);
 
 /// What is taken for what, power by effect, calibration and coverage.
 [[nodiscard]] io::Report selftest_page(const SelftestResult& result);
 [[nodiscard]] std::string to_markdown(const SelftestResult& result);
-[[nodiscard]] std::string to_csv(const SelftestResult& result);  ///< a row a case
 /// selftest.html, selftest.md (all rates and tables) and selftest.csv (a row a case); the folder is made.
 /// Throws Error(io).
 void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by);
-
-// What a reconciliation leaves behind, as files; the formats are described in docs/formats/reconcile.md.
 
 /// What write_report() and the reference table (table/, table_with_.../) write in its folder.
 inline constexpr std::array report_files{
@@ -87,7 +68,5 @@ inline constexpr std::array report_files{
 
 [[nodiscard]] std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
                                   const Context& context, const Provenance& provenance);
-[[nodiscard]] std::string where_csv(const Outcome& outcome);
-[[nodiscard]] std::string candidates_csv(const Outcome& outcome);
 
 }  // namespace pirsim::reconcile

@@ -17,8 +17,7 @@ namespace {
 
 io::Table rate_table(const SelftestResult& result) {
   io::Table table{{"how often", "share (95 % interval)"}, {}};
-  for (const Rate& rate : rates_of(result))
-    table.rows.push_back({std::string(in_words(rate.what)), with_interval(rate)});
+  for (const Rate& rate : rates_of(result)) table.rows.push_back({rate.what, with_interval(rate)});
   return table;
 }
 
@@ -55,13 +54,27 @@ std::string finding(const SelftestResult& result) {
   std::string text =
       "In " + std::to_string(result.cases.size()) + " simulated datasets, with something hidden or nothing: ";
   std::string between;
-  for (const Counted what : {Counted::alarm_on_nothing, Counted::seen, Counted::exact_name, Counted::wrong_name}) {
+  for (const char* what : {alarm_on_nothing, disagreement_seen, exact_name, wrong_name}) {
     const Rate& rate = *std::ranges::find(rates, what, &Rate::what);
     if (rate.of == 0) continue;
-    text += between + std::string(in_words(what)) + " in " + percent(rate.value());
+    text += between + what + " in " + percent(rate.value());
     between = "; ";
   }
   return text + ".";
+}
+
+/// How often each effect is seen against its strength, all in one picture.
+io::GridChart power_grid(const SelftestResult& result) {
+  io::GridChart chart;
+  chart.title = "How often a disagreement is seen, by strength of the effect";
+  chart.label = "share seen";
+  chart.columns = {"weak", "medium", "strong"};
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    chart.rows.push_back(result.hypotheses[hypothesis]);
+    const std::vector<Rate> rates = power_of(result, result.hypotheses[hypothesis]);
+    for (std::size_t i = 0; i < rates.size(); i += 2) chart.cells.push_back(share_cell(rates[i]));
+  }
+  return chart;
 }
 
 io::ReportSection power(const SelftestResult& result) {
@@ -77,222 +90,14 @@ io::ReportSection power(const SelftestResult& result) {
   return section;
 }
 
-std::string strength_and(const Rate& rate) {
-  return std::string(name(rate.strength)) + (rate.what == Counted::seen ? ": seen" : ": seen and in the set");
-}
-
-}  // namespace
-
-io::GridChart confusion_chart(const SelftestResult& result) {
-  io::GridChart chart = confusion_grid(result.hypotheses, confusion_of(result));
-  chart.title = "What was hidden (rows), and what it looked like most (columns)";
-  chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
-      "effect without a disagreement are left out.";
-  return chart;
-}
-
-io::LineChart power_chart(const SelftestResult& result, const std::string& effect) {
-  io::LineChart chart;
-  chart.title = effect;
-  chart.x_names = {"weak", "medium", "strong"};
-  chart.x_low = 0.8;
-  chart.x_high = 3.2;
-  chart.y_label = "share";
-  chart.lines = {{"seen", {}}, {"in the set", {}}};
-  const std::vector<Rate> rates = power_of(result, effect);
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    if (rates[i].of == 0) continue;
-    const auto strength = static_cast<double>(1 + i / 2);
-    const double beside = i % 2 == 0 ? -0.02 : 0.02;  // so that the ranges don't cover each other
-    chart.lines[i % 2].points.push_back({strength + beside, rates[i].value(), rates[i].interval.low,
-                                         rates[i].interval.high,
-                                         strength_and(rates[i]) + ": " + with_interval(rates[i])});
-  }
-  return chart;
-}
-
-io::GridChart power_grid(const SelftestResult& result) {
-  io::GridChart chart;
-  chart.title = "How often a disagreement is seen, by strength of the effect";
-  chart.label = "share seen";
-  chart.columns = {"weak", "medium", "strong"};
-  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
-    chart.rows.push_back(result.hypotheses[hypothesis]);
-    const std::vector<Rate> rates = power_of(result, result.hypotheses[hypothesis]);
-    for (std::size_t i = 0; i < rates.size(); i += 2) chart.cells.push_back(share_cell(rates[i]));
-  }
-  return chart;
-}
-
-io::LineChart reliability_chart(const SelftestResult& result) {
-  io::LineChart chart;
-  chart.title = "Do the probabilities mean what they say";
-  chart.note =
-      "On the dashed line, what is called 70 % likely is right in 70 % of cases; below it, the program is too "
-      "sure of itself.";
-  chart.x_label = "probability of the likeliest hypothesis";
-  chart.y_label = "share in which it was right";
-  chart.guide = io::LineChart::Guide::diagonal;
-  chart.lines = {{"likeliest hypothesis", {}}};
-  for (const stats::ReliabilityBin& bin : result.reliability.bins) {
-    if (bin.rows == 0) continue;
-    const auto hits = static_cast<std::size_t>(bin.share_right * static_cast<double>(bin.rows) + 0.5);
-    const Interval interval = stats::clopper_pearson(hits, bin.rows);
-    chart.lines[0].points.push_back({bin.mean_probability, bin.share_right, interval.low, interval.high,
-                                     "called " + percent(bin.mean_probability) + ", right in " + std::to_string(hits) +
-                                         " of " + std::to_string(bin.rows)});
-  }
-  return chart;
-}
-
-io::BarChart coverage_chart(const SelftestResult& result) {
-  io::BarChart chart;
-  chart.title = "How often the 90 % intervals hold the true parameter";
-  chart.note =
-      "Should be near 90 %. Lines show what chance leaves open (95 %); effects without a fitted case are left "
-      "out.";
-  chart.label = "share of parameters covered";
-  for (const std::string& hypothesis : result.hypotheses) {
-    std::size_t hits = 0, of = 0;
-    for (const InjectedCase& c : result.cases) {
-      if (c.kind != CaseKind::one || c.truth != hypothesis) continue;
-      hits += c.n_covered;
-      of += c.n_parameters;
-    }
-    if (of == 0) continue;
-    const Rate rate{Counted::parameters_covered, hits, of, stats::clopper_pearson(hits, of), Strength::none};
-    chart.bars.push_back({hypothesis, rate.value(), percent(rate.value()) + " of " + std::to_string(of),
-                          io::BarChart::Weight::plain, rate.interval.low, rate.interval.high, with_interval(rate)});
-  }
-  return chart;
-}
-
-io::Report selftest_page(const SelftestResult& result) {
-  io::Report report;
-  report.title = "Does reconciliation find what is hidden?";
-  report.finding = finding(result);
-  report.sections = {confusion(result), pairs(result), power(result)};
-  io::ReportSection calibration{"Can probabilities and intervals be trusted", {}, {}, {}};
-  calibration.paragraphs = {"Mean distance between probability and share: " + calibration_error(result) + "."};
-  calibration.charts.emplace_back(reliability_chart(result));
-  if (io::BarChart chart = coverage_chart(result); !chart.bars.empty())
-    calibration.charts.emplace_back(std::move(chart));
-  report.sections.push_back(std::move(calibration));
-  report.sections.push_back({"All rates", {}, {rate_table(result)}, {}});
-  return report;
-}
-
-void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by) {
-  std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  io::write_text_file(folder / "selftest.csv", to_csv(result));
-  io::write_text_file(folder / "selftest.md", to_markdown(result));
-  io::Report page = selftest_page(result);
-  page.footer = made_by;
-  io::write_text_file(folder / "selftest.html", io::to_html(page));
-}
-
-// Plans and what a self-test counts in words, and a self-test as text.
-
-std::string name(const Design& design) {
-  constexpr std::array<std::string_view, 6> names{"as planned", "",           "all again",
-                                                  "slow walk",  "empty room", "second by second"};
-  if (design.kind == Design::Kind::trial_again) return "trial " + design.trial + " again";
-  return std::string(names[static_cast<std::size_t>(design.kind)]);
-}
-
-std::string what_of(const Design& design) {
-  constexpr std::array<std::string_view, 6> texts{
-      "what is planned",       "",
-      "every trial once more", "one person walking slowly through the room",
-      "the empty room",        "the same, second by second instead of sums"};
-  if (design.kind == Design::Kind::trial_again) return "trial " + design.trial + " once more";
-  return std::string(texts[static_cast<std::size_t>(design.kind)]);
-}
-
-std::string sentence(const PlanResult& result) {
-  const Design& planned = result.designs.front();
-  const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
-                          " of cases (" + short_number(planned.bits) + " bits)";
-  const Design* best = result.best();
-  if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
-  return "The best next measurement is " + what_of(*best) + " (" + short_number(best->minutes) + " min more): " + now +
-         ", with it " + percent(best->right) + " (" + short_number(best->more_bits) + " bits more, 95 % interval " +
-         short_number(best->more_bits_95.low) + " to " + short_number(best->more_bits_95.high) + ").";
-}
-
-std::string_view in_words(Counted counted) noexcept {
-  constexpr std::array<std::string_view, 24> texts{
-      "a disagreement although nothing is hidden",
-      "a name although nothing is hidden",
-      "a disagreement seen",
-      "exactly the right name, given a disagreement",
-      "the right family, given a disagreement",
-      "a name, given a disagreement",
-      "the right name, given a name",
-      "one wrong name",
-      "one wrong family",
-      "the truth in the set, given a disagreement",
-      "none in the catalogue, given a disagreement",
-      "parameters within their 90 % intervals",
-      "an effect that the catalogue lacks: a disagreement seen",
-      "an effect that the catalogue lacks: called none in the catalogue, given a disagreement",
-      "an effect that the catalogue lacks and the whole one names: called none in the catalogue, given a disagreement",
-      "an effect that the catalogue lacks: called by one name",
-      "an effect that the catalogue lacks: called by one name of another family",
-      "people's motion, in the catalogue or not: called by a name of optics or electronics",
-      "two effects, first look: one or both in the set, given a disagreement",
-      "two effects, first look: no single effect will do, given a disagreement",
-      "two effects, first look: one wrong name",
-      "seen and in the set",
-      "taken for each other"};
-  return texts[static_cast<std::size_t>(counted)];
-}
-
-namespace {
-
 std::string share(const Rate& rate) {
   if (rate.of == 0) return "no case";
   std::ostringstream out;
-  out << std::fixed << std::setprecision(3) << rate.value() << " (" << rate.interval.low << "-" << rate.interval.high
-      << ", " << rate.hits << " of " << rate.of << ")";
+  const Interval interval = rate.interval();
+  out << std::fixed << std::setprecision(3) << rate.value() << " (" << interval.low << "-" << interval.high << ", "
+      << rate.hits << " of " << rate.of << ")";
   return out.str();
 }
-
-}  // namespace
-
-std::string to_markdown(const SelftestResult& result) {
-  std::ostringstream out;
-  out << "| how often | share (95 % interval) |\n|---|---|\n";
-  for (const Rate& rate : rates_of(result)) out << "| " << in_words(rate.what) << " | " << share(rate) << " |\n";
-  out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
-  for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
-  out << "\n|---|---|---|---|---|---|---|\n";
-  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
-    out << "| " << result.hypotheses[hypothesis] << " |";
-    for (const Rate& rate : power_of(result, result.hypotheses[hypothesis])) {
-      out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
-    }
-    out << '\n';
-  }
-  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's "
-         "hypothesis is "
-         "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
-  const auto confusion = confusion_of(result);
-  for (std::size_t row = 0; row < confusion.size(); ++row) {
-    out << "| " << result.hypotheses[row] << " |";
-    std::string list;
-    for (std::size_t column = 0; column < confusion.size(); ++column) {
-      if (confusion[row][column] < 0.05) continue;
-      list += (list.empty() ? " " : ", ") + result.hypotheses[column] + " " + fixed(confusion[row][column], 2);
-    }
-    out << list << " |\n";
-  }
-  return out.str();
-}
-
-namespace {
 
 struct CaseLine {
   const InjectedCase& one;
@@ -333,12 +138,159 @@ CaseLine line_of(const InjectedCase& one) {
   return line;
 }
 
-}  // namespace
+/// How often the likeliest hypothesis was right, against the probability that it was given.
+io::LineChart reliability_chart(const SelftestResult& result) {
+  io::LineChart chart;
+  chart.title = "Do the probabilities mean what they say";
+  chart.note =
+      "On the dashed line, what is called 70 % likely is right in 70 % of cases; below it, the program is too "
+      "sure of itself.";
+  chart.x_label = "probability of the likeliest hypothesis";
+  chart.y_label = "share in which it was right";
+  chart.guide = io::LineChart::Guide::diagonal;
+  chart.lines = {{"likeliest hypothesis", {}}};
+  for (const stats::ReliabilityBin& bin : result.reliability.bins) {
+    if (bin.rows == 0) continue;
+    const auto hits = static_cast<std::size_t>(bin.share_right * static_cast<double>(bin.rows) + 0.5);
+    const Interval interval = stats::clopper_pearson(hits, bin.rows);
+    chart.lines[0].points.push_back({bin.mean_probability, bin.share_right, interval.low, interval.high,
+                                     "called " + percent(bin.mean_probability) + ", right in " + std::to_string(hits) +
+                                         " of " + std::to_string(bin.rows)});
+  }
+  return chart;
+}
+
+/// Effect by effect: how often the 90 % intervals hold the truth.
+io::BarChart coverage_chart(const SelftestResult& result) {
+  io::BarChart chart;
+  chart.title = "How often the 90 % intervals hold the true parameter";
+  chart.note =
+      "Should be near 90 %. Lines show what chance leaves open (95 %); effects without a fitted case are left "
+      "out.";
+  chart.label = "share of parameters covered";
+  for (const std::string& hypothesis : result.hypotheses) {
+    Rate rate;
+    for (const InjectedCase& c : result.cases) {
+      if (c.kind != CaseKind::one || c.truth != hypothesis) continue;
+      rate.hits += c.n_covered;
+      rate.of += c.n_parameters;
+    }
+    if (rate.of == 0) continue;
+    const Interval interval = rate.interval();
+    chart.bars.push_back({hypothesis, rate.value(), percent(rate.value()) + " of " + std::to_string(rate.of),
+                          io::BarChart::Weight::plain, interval.low, interval.high, with_interval(rate)});
+  }
+  return chart;
+}
+
+std::string calibration_error(const SelftestResult& result) {
+  return result.reliability.bins.empty() ? "no case" : fixed(result.reliability.expected_calibration_error, 3);
+}
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
   io::TableWriter<CaseLine> csv(out, std::span<const Column<CaseLine>>(case_lines));
   for (const InjectedCase& one : result.cases) csv.write(line_of(one));
+  return out.str();
+}
+
+}  // namespace
+
+io::GridChart confusion_chart(const SelftestResult& result) {
+  io::GridChart chart = confusion_grid(result.hypotheses, confusion_of(result));
+  chart.title = "What was hidden (rows), and what it looked like most (columns)";
+  chart.note =
+      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
+      "effect without a disagreement are left out.";
+  return chart;
+}
+
+io::LineChart power_chart(const SelftestResult& result, const std::string& effect) {
+  io::LineChart chart;
+  chart.title = effect;
+  chart.x_names = {"weak", "medium", "strong"};
+  chart.x_low = 0.8;
+  chart.x_high = 3.2;
+  chart.y_label = "share";
+  chart.lines = {{"seen", {}}, {"in the set", {}}};
+  const std::vector<Rate> rates = power_of(result, effect);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    if (rates[i].of == 0) continue;
+    const auto strength = static_cast<double>(1 + i / 2);
+    const double beside = i % 2 == 0 ? -0.02 : 0.02;  // so that the ranges don't cover each other
+    const Interval interval = rates[i].interval();
+    chart.lines[i % 2].points.push_back(
+        {strength + beside, rates[i].value(), interval.low, interval.high,
+         chart.x_names[i / 2] + (i % 2 == 0 ? ": seen" : ": seen and in the set") + ": " + with_interval(rates[i])});
+  }
+  return chart;
+}
+
+io::Report selftest_page(const SelftestResult& result) {
+  io::Report report;
+  report.title = "Does reconciliation find what is hidden?";
+  report.finding = finding(result);
+  report.sections = {confusion(result), pairs(result), power(result)};
+  io::ReportSection calibration{"Can probabilities and intervals be trusted", {}, {}, {}};
+  calibration.paragraphs = {"Mean distance between probability and share: " + calibration_error(result) + "."};
+  calibration.charts.emplace_back(reliability_chart(result));
+  if (io::BarChart chart = coverage_chart(result); !chart.bars.empty())
+    calibration.charts.emplace_back(std::move(chart));
+  report.sections.push_back(std::move(calibration));
+  report.sections.push_back({"All rates", {}, {rate_table(result)}, {}});
+  return report;
+}
+
+void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  io::write_text_file(folder / "selftest.csv", to_csv(result));
+  io::write_text_file(folder / "selftest.md", to_markdown(result));
+  io::Report page = selftest_page(result);
+  page.footer = made_by;
+  io::write_text_file(folder / "selftest.html", io::to_html(page));
+}
+
+// Plans and what a self-test counts in words, and a self-test as text.
+
+std::string sentence(const PlanResult& result) {
+  const Design& planned = result.designs.front();
+  const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
+                          " of cases (" + short_number(planned.bits) + " bits)";
+  const Design* best = result.best();
+  if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
+  return "The best next measurement is " + best->what + " (" + short_number(best->minutes) + " min more): " + now +
+         ", with it " + percent(best->right) + " (" + short_number(best->more_bits) + " bits more, 95 % interval " +
+         short_number(best->more_bits_95.low) + " to " + short_number(best->more_bits_95.high) + ").";
+}
+
+std::string to_markdown(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "| how often | share (95 % interval) |\n|---|---|\n";
+  for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
+  out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
+  for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
+  out << "\n|---|---|---|---|---|---|---|\n";
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    out << "| " << result.hypotheses[hypothesis] << " |";
+    for (const Rate& rate : power_of(result, result.hypotheses[hypothesis])) {
+      out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
+    }
+    out << '\n';
+  }
+  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's "
+         "hypothesis is "
+         "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
+  const auto confusion = confusion_of(result);
+  for (std::size_t row = 0; row < confusion.size(); ++row) {
+    out << "| " << result.hypotheses[row] << " |";
+    std::string list;
+    for (std::size_t column = 0; column < confusion.size(); ++column) {
+      if (confusion[row][column] < 0.05) continue;
+      list += (list.empty() ? " " : ", ") + result.hypotheses[column] + " " + fixed(confusion[row][column], 2);
+    }
+    out << list << " |\n";
+  }
   return out.str();
 }
 

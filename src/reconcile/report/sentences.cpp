@@ -5,57 +5,15 @@
 #include <iomanip>
 #include <sstream>
 #include <string_view>
-#include <variant>
 
 #include "engine/effects/catalogue.hpp"
 #include "model/core/text.hpp"
 #include "reconcile/inference/analyst.hpp"
 
 namespace pirsim::reconcile {
+namespace {
 
-std::string enumerated(const std::vector<std::string>& names, const std::string& last) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
-  }
-  return text;
-}
-
-std::string short_number(double value) {
-  std::ostringstream out;
-  out << std::setprecision(3) << value;
-  return out.str();
-}
-
-std::string p_in_words(double p, double least_p) {
-  return (least_p > 0.0 && p <= least_p ? "p <= " : "p = ") + short_number(p);
-}
-
-std::string with_unit(double value, const std::string& unit) {
-  const std::string number = short_number(value);
-  if (unit.empty()) return number;
-  return number + (unit.starts_with("1/") ? " per " + unit.substr(2) : " " + unit);
-}
-
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str() == "-0" ? "0" : out.str();
-}
-
-std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
-  constexpr double as_likely = 0.2;  // assumed: what is less probable isn't worth telling
-  std::vector<std::string> rivals;
-  for (const FittedChoice& fit : fitted.choices) {
-    if (fit.name != choice) continue;
-    for (const auto& [word, probability] : fit.words) {
-      if (word == value || probability < as_likely) continue;
-      rivals.push_back((word.empty() ? "all" : word) + ", probability " + fixed(probability, 2));
-    }
-  }
-  return rivals.empty() ? "" : " (or " + joined(rivals, "; or ") + ")";
-}
-
+/// With its twins.
 std::string name_in_words(const FittedEffect& fitted) {
   std::string text = fitted.effect.name;
   for (const std::string& twin : effects::twins_of(fitted.effect.name))
@@ -63,6 +21,7 @@ std::string name_in_words(const FittedEffect& fitted) {
   return text;
 }
 
+/// Its parameters and choices; empty for an effect that is there or not.
 std::string strength_in_words(const FittedEffect& fitted) {
   const effects::EffectInfo& info = effects::find(fitted.effect.name).info;
   std::vector<std::string> told;
@@ -79,39 +38,6 @@ std::string strength_in_words(const FittedEffect& fitted) {
   return joined(told, ", ") + (fitted.includes_off ? ", so uncertain that the interval includes no effect" : "");
 }
 
-std::string in_words(const FittedEffect& fitted) {
-  const std::string strength = strength_in_words(fitted);
-  return name_in_words(fitted) + (strength.empty() ? "" : ": " + strength);
-}
-
-std::string in_words(const Look& look) {
-  std::string text = "With " + enumerated(look.applied, "and") + " applied, the model " +
-                     (look.passes() ? "can have made these data" : "still differs from the data") + " (" +
-                     p_in_words(look.p, look.least_p) + ").";
-  if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
-  if (look.one_of.size() > 1)
-    text += " What is missing beside it may be " + enumerated(look.one_of, "or") + ": these data can't tell.";
-  return text;
-}
-
-std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates) {
-  std::vector<Candidate> all;
-  for (const Candidate& candidate : candidates) {
-    all.push_back(candidate);
-    for (const std::string& twin : effects::twins_of(candidate.score.hypothesis)) {
-      const auto is_twin = [&](const Candidate& other) { return other.score.hypothesis == twin; };
-      if (std::ranges::any_of(candidates, is_twin)) continue;  // it was asked for
-      all.push_back(candidate);
-      all.back().score.hypothesis = twin;
-      all.back().reason = reason::SameAs{candidate.score.hypothesis};
-      all.back().named_together = false;
-    }
-  }
-  return all;
-}
-
-namespace {
-
 using What = DataFinding::What;
 
 /// 1,800
@@ -121,7 +47,7 @@ std::string grouped(std::size_t n) {
   return digits;
 }
 
-std::string place(const DataFinding::Place& place) {
+std::string place(const DataFinding::Rows& place) {
   return "rows " + grouped(place.from_row) + " to " + grouped(place.to_row) + " of " + place.trial + " (run " +
          std::to_string(place.replicate) + ")";
 }
@@ -154,89 +80,6 @@ std::string_view advice(What what) {
   }
   return "see whether the sensor has power and its column is the right one";
 }
-
-}  // namespace
-
-std::string in_words(const DataFinding& finding) {
-  const std::string every = "every " + short_number(finding.every_s) + " s";
-  const std::string& sensor = finding.sensors.empty() ? std::string() : finding.sensors.front();
-  switch (finding.what) {
-    case What::equal_columns:
-      return alike(finding, "are equal");
-    case What::opposite_columns:
-      return alike(finding, "are opposite");
-    case What::constant_column:
-      return sensor + " is 1 in all " + grouped(finding.n_rows) + " rows";
-    case What::beats:
-      return sensor + " is 1 " + every + ", whatever happens";
-    case What::polled:
-      return "no sensor changes but " + every;
-    case What::repeated_rows:
-      return place(finding.places.front()) + " stand again as " + place(finding.places.back());
-    case What::all_silent:
-      return "all sensors are silent together in " + place(finding.places.front()) +
-             (finding.is_impossible ? ", far longer than else in that run and than" : ", longer than") +
-             " in any simulated one";
-    case What::silent_column:
-      break;
-  }
-  return sensor + " has no 1 in " + grouped(finding.n_rows) + " rows, though the model expects some";
-}
-
-Outcome as_compared(const Outcome& outcome) {
-  Outcome rows = outcome;
-  rows.verdict = outcome.verdict_of_rows;
-  return rows;
-}
-
-std::string sentence_of_file(const Outcome& outcome) {
-  std::vector<std::string> told;
-  for (const DataFinding& finding : outcome.data_findings) {
-    if (finding.is_impossible) told.push_back(in_words(finding));
-  }
-  std::string text = "Look at the file first: ";
-  for (const std::string& finding : told) text += (&finding == &told.front() ? "" : "; ") + finding;
-  return text + ", which sensors can't have said.";
-}
-
-std::vector<std::string> details_of_faulty(const Outcome& outcome) {
-  const Outcome rows = as_compared(outcome);
-  std::vector<std::string> texts = details(rows);
-  texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows));
-  return texts;
-}
-
-std::string next_step_of_faulty(const Outcome& outcome) {
-  std::vector<std::string> steps;
-  for (const DataFinding& finding : outcome.data_findings) {
-    const std::string step(advice(finding.what));
-    if (finding.is_impossible && std::ranges::find(steps, step) == steps.end()) steps.push_back(step);
-  }
-  std::string text = "What to do next: ";
-  for (const std::string& step : steps) text += (&step == &steps.front() ? "" : "; ") + step;
-  return text + ". Then mend the file and analyse it again. What else is told here may come from the same fault.";
-}
-
-io::ReportSection file_section(const std::vector<DataFinding>& findings) {
-  io::ReportSection section{"A look at the file", {}, {}, {}};
-  section.paragraphs.emplace_back(
-      "Before anything is compared, the rows themselves are looked at: can sensors have said them? What the model's "
-      "own "
-      "runs do as well, as repeating a movement by the metronome, isn't told.");
-  io::Table table{{"finding", "told since", "what to do"}, {}};
-  for (const DataFinding& finding : findings) {
-    const std::string chance = finding.chance < 1e-12 ? "below 1e-12" : short_number(finding.chance);
-    table.rows.push_back({in_words(finding),
-                          finding.is_impossible ? "by chance " + chance : "odd, but sensors can do that",
-                          std::string(advice(finding.what))});
-  }
-  section.tables.push_back(std::move(table));
-  return section;
-}
-
-// The verdict in one sentence, what was found on the way to it, and what a reader may do.
-
-namespace {
 
 using Names = std::vector<std::string>;
 
@@ -279,9 +122,9 @@ Names first_ones(const Names& names) {
 /// Why nothing of the catalogue is taken for what is missing.
 std::string no_effect(const Outcome& outcome) {
   for (const Candidate& candidate : outcome.candidates) {
-    if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
+    if (candidate.reason.what == Reason::What::like_impostors)
       return " It looks most like " + candidate.score.hypothesis + ", but " + candidate.score.hypothesis +
-             " itself seldom makes such data (p = " + short_number(likeness->p_own) +
+             " itself seldom makes such data (p = " + short_number(candidate.score.p_own) +
              "): more probably another cause imitates it.";
   }
   Names possible;
@@ -312,8 +155,7 @@ std::string rivals(const Outcome& outcome) {
   for (const Candidate& candidate : outcome.candidates) {
     if (candidate.kept && candidate.score.hypothesis != outcome.named.front())
       names.push_back(candidate.score.hypothesis);
-    if (std::holds_alternative<reason::HardlySimulated>(candidate.reason))
-      unknown.push_back(candidate.score.hypothesis);
+    if (candidate.reason.what == Reason::What::hardly_simulated) unknown.push_back(candidate.score.hypothesis);
   }
   if (!names.empty())
     return " " + enumerated(names, "and") + " can't be ruled out, but " + outcome.named.front() +
@@ -344,6 +186,17 @@ std::string counts_first(const Outcome& outcome) {
   return "Check the people counts first: while they may be wrong, what else is missing can't be told. ";
 }
 
+/// What was applied helps on no trial set aside, and the folds don't agree on an effect of the verdict's: what is
+/// missing may well be none of them.
+bool is_unsupported(const Outcome& outcome) {
+  if (!outcome.verification || outcome.verification->shrunk) return false;
+  const std::vector<std::string>& found = outcome.verification->names;
+  const auto of_the_set = std::ranges::count_if(
+      found, [&](const std::string& name) { return std::ranges::find(outcome.named, name) != outcome.named.end(); });
+  const auto as_first = std::ranges::count(found, found.empty() ? std::string() : found.front());
+  return 2 * of_the_set <= std::ssize(found) || 2 * as_first <= std::ssize(found);
+}
+
 std::string sentence_of_set(const Outcome& outcome) {
   const std::string places = where(outcome);
   if (outcome.named.empty()) return "Measurement and simulation differ, but by too little to name a cause." + places;
@@ -372,7 +225,7 @@ std::string sentence_of_set(const Outcome& outcome) {
 /// The one effect that would have been named was dropped since the model with it can't have made the data.
 bool was_refused(const Outcome& outcome) {
   return std::ranges::any_of(outcome.candidates, [](const Candidate& candidate) {
-    return std::holds_alternative<reason::RefusedWhenApplied>(candidate.reason);
+    return candidate.reason.what == Reason::What::refused_when_applied;
   });
 }
 
@@ -405,7 +258,7 @@ std::string told_of_likeness(const Outcome& outcome) {
   const Look& look = outcome.looks.back();
   return "The closest known cause is " + look.applied.front() +
          ": with it applied, the test of everything together sees no difference (" + p_in_words(look.p, look.least_p) +
-         "). It was dropped all the same: " + why(candidate_of(outcome, look.applied.front()).reason);
+         "). It was dropped all the same: " + candidate_of(outcome, look.applied.front()).reason.why;
 }
 
 std::string told_of_end(const RangeEnd& end) {
@@ -505,22 +358,165 @@ std::string step_of_set(const Outcome& outcome) {
          (rest.size() > most_told ? "the likeliest do" : "each does") + " to the data: " + joined(texts, ". ") + ".";
 }
 
+std::string drivers_in_words(const Residuals& residuals) {
+  std::vector<std::string> texts;
+  for (const ResidualDriver& driver : residuals.drivers)
+    texts.push_back(driver.who + (driver.when.empty() ? "" : ", " + driver.when) + ": " + driver.what + " (" +
+                    p_in_words(driver.p, driver.least_p) + ")");
+  return joined(texts, "; ");
+}
+
+/// Of the verdict faulty_data: what is wrong with the file.
+std::string sentence_of_file(const Outcome& outcome) {
+  std::vector<std::string> told;
+  for (const DataFinding& finding : outcome.data_findings) {
+    if (finding.is_impossible) told.push_back(in_words(finding));
+  }
+  return "Look at the file first: " + joined(told, "; ") + ", which sensors can't have said.";
+}
+
+/// With that verdict, what the comparison says.
+std::vector<std::string> details_of_faulty(const Outcome& outcome) {
+  const Outcome rows = as_compared(outcome);
+  std::vector<std::string> texts = details(rows);
+  texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows));
+  return texts;
+}
+
+/// What a reader may do with that verdict.
+std::string next_step_of_faulty(const Outcome& outcome) {
+  std::vector<std::string> steps;
+  for (const DataFinding& finding : outcome.data_findings) {
+    const std::string step(advice(finding.what));
+    if (finding.is_impossible && std::ranges::find(steps, step) == steps.end()) steps.push_back(step);
+  }
+  return "What to do next: " + joined(steps, "; ") +
+         ". Then mend the file and analyse it again. What else is told here may come from the same fault.";
+}
+
 }  // namespace
+
+std::string enumerated(const std::vector<std::string>& names, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
+  }
+  return text;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const std::string number = short_number(value);
+  if (unit.empty()) return number;
+  return number + (unit.starts_with("1/") ? " per " + unit.substr(2) : " " + unit);
+}
+
+std::string fixed(double value, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << value;
+  return out.str() == "-0" ? "0" : out.str();
+}
+
+std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
+  constexpr double as_likely = 0.2;  // assumed: what is less probable isn't worth telling
+  std::vector<std::string> rivals;
+  for (const FittedChoice& fit : fitted.choices) {
+    if (fit.name != choice) continue;
+    for (const auto& [word, probability] : fit.words) {
+      if (word == value || probability < as_likely) continue;
+      rivals.push_back((word.empty() ? "all" : word) + ", probability " + fixed(probability, 2));
+    }
+  }
+  return rivals.empty() ? "" : " (or " + joined(rivals, "; or ") + ")";
+}
+
+std::string in_words(const FittedEffect& fitted) {
+  const std::string strength = strength_in_words(fitted);
+  return name_in_words(fitted) + (strength.empty() ? "" : ": " + strength);
+}
+
+std::string in_words(const Look& look) {
+  std::string text = "With " + enumerated(look.applied, "and") + " applied, the model " +
+                     (look.passes() ? "can have made these data" : "still differs from the data") + " (" +
+                     p_in_words(look.p, look.least_p) + ").";
+  if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
+  if (look.one_of.size() > 1)
+    text += " What is missing beside it may be " + enumerated(look.one_of, "or") + ": these data can't tell.";
+  return text;
+}
+
+std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates) {
+  std::vector<Candidate> all;
+  for (const Candidate& candidate : candidates) {
+    all.push_back(candidate);
+    for (const std::string& twin : effects::twins_of(candidate.score.hypothesis)) {
+      const auto is_twin = [&](const Candidate& other) { return other.score.hypothesis == twin; };
+      if (std::ranges::any_of(candidates, is_twin)) continue;  // it was asked for
+      all.push_back(candidate);
+      all.back().score.hypothesis = twin;
+      all.back().reason = {"",
+                           "Judged as " + candidate.score.hypothesis + ", which changes the model in the same way."};
+      all.back().named_together = false;
+    }
+  }
+  return all;
+}
+
+std::string in_words(const DataFinding& finding) {
+  const std::string every = "every " + short_number(finding.every_s) + " s";
+  const std::string& sensor = finding.sensors.empty() ? std::string() : finding.sensors.front();
+  switch (finding.what) {
+    case What::equal_columns:
+      return alike(finding, "are equal");
+    case What::opposite_columns:
+      return alike(finding, "are opposite");
+    case What::constant_column:
+      return sensor + " is 1 in all " + grouped(finding.n_rows) + " rows";
+    case What::beats:
+      return sensor + " is 1 " + every + ", whatever happens";
+    case What::polled:
+      return "no sensor changes but " + every;
+    case What::repeated_rows:
+      return place(finding.places.front()) + " stand again as " + place(finding.places.back());
+    case What::all_silent:
+      return "all sensors are silent together in " + place(finding.places.front()) +
+             (finding.is_impossible ? ", far longer than else in that run and than" : ", longer than") +
+             " in any simulated one";
+    case What::silent_column:
+      break;
+  }
+  return sensor + " has no 1 in " + grouped(finding.n_rows) + " rows, though the model expects some";
+}
+
+Outcome as_compared(const Outcome& outcome) {
+  Outcome rows = outcome;
+  rows.verdict = outcome.verdict_of_rows;
+  return rows;
+}
+
+io::ReportSection file_section(const std::vector<DataFinding>& findings) {
+  io::ReportSection section{"A look at the file", {}, {}, {}};
+  section.paragraphs.emplace_back(
+      "Before anything is compared, the rows themselves are looked at: can sensors have said them? What the model's "
+      "own "
+      "runs do as well, as repeating a movement by the metronome, isn't told.");
+  io::Table table{{"finding", "told since", "what to do"}, {}};
+  for (const DataFinding& finding : findings) {
+    const std::string chance = finding.chance < 1e-12 ? "below 1e-12" : short_number(finding.chance);
+    table.rows.push_back({in_words(finding),
+                          finding.is_impossible ? "by chance " + chance : "odd, but sensors can do that",
+                          std::string(advice(finding.what))});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+// The verdict in one sentence, what was found on the way to it, and what a reader may do.
 
 std::string seen_on_held_out(const Verification& v) {
   const std::string there = "On trials not used for fitting, ";
   if (v.closed) return there + "the simulation with what was applied agrees with the data.";
   if (v.shrunk) return there + "the simulation with what was applied comes closer to the data.";
   return there + "no improvement could be demonstrated.";
-}
-
-bool is_unsupported(const Outcome& outcome) {
-  if (!outcome.verification || outcome.verification->shrunk) return false;
-  const std::vector<std::string>& found = outcome.verification->names;
-  const auto of_the_set = std::ranges::count_if(
-      found, [&](const std::string& name) { return std::ranges::find(outcome.named, name) != outcome.named.end(); });
-  const auto as_first = std::ranges::count(found, found.empty() ? std::string() : found.front());
-  return 2 * of_the_set <= std::ssize(found) || 2 * as_first <= std::ssize(found);
 }
 
 std::string next_step(const Outcome& outcome) {
@@ -589,6 +585,23 @@ std::vector<std::string> details(const Outcome& outcome) {
   if (outcome.residuals) texts.push_back(sentence(*outcome.residuals));
   if (outcome.left_over && !outcome.left_over->drivers.empty()) texts.push_back(sentence_of_rest(*outcome.left_over));
   return texts;
+}
+
+std::string in_words(const Candidate& candidate) {
+  const auto& [decision, why, what] = candidate.reason;
+  return (candidate.named_together ? "Kept, together with the others named. By itself: " : "") + decision +
+         (decision.empty() ? "" : ": ") + why;
+}
+
+std::string sentence_of_rest(const Residuals& rest) {
+  const std::string text = drivers_in_words(rest);
+  return text.empty() ? "" : "Something else shows: " + text + ".";
+}
+
+std::string sentence(const Residuals& residuals) {
+  const std::string text = drivers_in_words(residuals);
+  return text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
+                      : "What is left: " + text + ".";
 }
 
 }  // namespace pirsim::reconcile

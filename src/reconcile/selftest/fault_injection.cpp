@@ -43,57 +43,44 @@ std::vector<Plan> plans_of(const ReferenceStudy& reference, const SelftestSettin
   return plans;
 }
 
-class InjectionJob {
- public:
-  InjectionJob(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed)
-      : reference_(reference), settings_(settings), seed_(seed), plans_(plans_of(reference, settings)) {}
-  [[nodiscard]] const std::vector<Plan>& plans() const { return plans_; }
+/// None if the draw isn't what the plan wants.
+std::optional<std::vector<EffectSpec>> draw(const Plan& plan, const std::vector<std::string>& names,
+                                            const Realization& realization, Stream& stream) {
+  std::vector<const effects::Effect*> wanted;
+  if (plan.effect != nullptr) wanted.push_back(plan.effect);
+  while (plan.kind == CaseKind::two && wanted.size() < 2) {
+    const effects::Effect* one = &effects::find(names[stream.index(static_cast<std::uint32_t>(names.size()))]);
+    if (wanted.empty() || wanted.front() != one) wanted.push_back(one);
+  }
+  std::vector<EffectSpec> drawn;
+  for (const effects::Effect* effect : wanted) {
+    drawn.push_back(effects::draw_from_prior(*effect, realization.scene, realization.script, stream));
+    if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
+  }
+  return drawn;
+}
 
-  [[nodiscard]] TableChunk run(std::uint32_t index) const {
-    const Plan& plan = plans_[index];
-    TableChunk chunk;
-    const SimulatedRealization realization(reference_.source, reference_.frame, first_injected_realization + index,
-                                           settings_.n_replicates);
-    for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
-      Stream stream({seed_, index, attempt, Purpose::injected_effects});
-      const std::optional<std::vector<EffectSpec>> effects = draw(plan, realization.drawn(), stream);
-      if (!effects) continue;
-      auto data = realization.with_effects(*effects, 0, settings_.n_replicates);
-      if (!data) continue;
-      chunk.datasets.push_back({{index, first_injected_realization + index, *effects}, std::move(*data)});
-      return chunk;
-    }
-    ++chunk.n_left_out;
+/// The dataset of the index-th plan, or none.
+TableChunk inject(const Plan& plan, std::uint32_t index, const ReferenceStudy& reference, int n_replicates,
+                  std::uint64_t seed) {
+  TableChunk chunk;
+  const SimulatedRealization realization(reference.source, reference.frame, first_injected_realization + index,
+                                         n_replicates);
+  for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
+    Stream stream({seed, index, attempt, Purpose::injected_effects});
+    const auto effects = draw(plan, reference.table.effects, realization.drawn(), stream);
+    if (!effects) continue;
+    auto data = realization.with_effects(*effects, 0, n_replicates);
+    if (!data) continue;
+    chunk.datasets.push_back({{index, first_injected_realization + index, *effects}, std::move(*data)});
     return chunk;
   }
-
- private:
-  /// None if the draw isn't what the plan wants.
-  [[nodiscard]] std::optional<std::vector<EffectSpec>> draw(const Plan& plan, const Realization& realization,
-                                                            Stream& stream) const {
-    std::vector<const effects::Effect*> wanted;
-    if (plan.effect != nullptr) wanted.push_back(plan.effect);
-    while (plan.kind == CaseKind::two && wanted.size() < 2) {
-      const auto n = static_cast<std::uint32_t>(reference_.table.effects.size());
-      const effects::Effect* one = &effects::find(reference_.table.effects[stream.index(n)]);
-      if (wanted.empty() || wanted.front() != one) wanted.push_back(one);
-    }
-    std::vector<EffectSpec> drawn;
-    for (const effects::Effect* effect : wanted) {
-      drawn.push_back(effects::draw_from_prior(*effect, realization.scene, realization.script, stream));
-      if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
-    }
-    return drawn;
-  }
-
-  const ReferenceStudy& reference_;
-  const SelftestSettings& settings_;
-  std::uint64_t seed_;
-  std::vector<Plan> plans_;
-};
+  ++chunk.n_left_out;
+  return chunk;
+}
 
 std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed) {
-  std::string text = "injected in " + reference.key;
+  std::string text = "injected in " + reference.table.key;
   for (const std::uint64_t n : {static_cast<std::uint64_t>(settings.n_replicates), std::uint64_t{settings.n_nulls},
                                 std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_pairs}, seed}) {
     text += ' ' + std::to_string(n);
@@ -127,20 +114,20 @@ std::string InjectedDataset::truth() const {
 
 std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const SelftestSettings& settings,
                                     const Context& context) {
-  context.begin({Stage::What::injecting_faults});
-  const InjectionJob job(reference, settings, context.seed);
+  context.begin("datasets with injected faults");
+  const std::vector<Plan> plans = plans_of(reference, settings);
   const std::string key = key_of(reference, settings, context.seed);
   TableStore store(folder_of(settings, key), key);
   std::vector<InjectedDataset> injected;
   stats::Matrix<float> statistics;
   for_each_chunk(
-      store, static_cast<std::uint32_t>(job.plans().size()), context,
-      [&](std::uint32_t index) { return job.run(index); },
+      store, static_cast<std::uint32_t>(plans.size()), context,
+      [&](std::uint32_t index) { return inject(plans[index], index, reference, settings.n_replicates, context.seed); },
       [&](TableChunk& chunk) {
         append_statistics(reference.frame, reference.shape, reference.table.profile, chunk, context.threads,
                           statistics);
         for (SimulatedDataset& dataset : chunk.datasets) {
-          const Plan& plan = job.plans()[dataset.row.hypothesis];
+          const Plan& plan = plans[dataset.row.hypothesis];
           injected.push_back({plan.kind, plan.strength, std::move(dataset.row.effects), {}});
         }
       });

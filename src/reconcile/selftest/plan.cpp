@@ -76,7 +76,8 @@ std::string unused_id(const ScriptSpec& script, std::string id, const std::strin
 
 /// Adds a trial if a person can carry it out in the room as it is drawn.
 template <typename Make>
-void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& index, LeftOut::Trial which, Make make) {
+void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& index, const std::string& what,
+         Make make) {
   try {
     TrialSpec trial = make();
     trial.id = unused_id(study.script, std::move(trial.id), " again");
@@ -87,25 +88,9 @@ void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& i
     index = {study.script.trials.size()};
     study.script.trials.push_back(std::move(trial));
   } catch (const Error& error) {
-    study.left_out.push_back({which, error.what()});
+    study.left_out.push_back(what + " is left out: " + error.what());
   }
 }
-
-}  // namespace
-
-LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
-  LongerStudy study{script, script.trials.size(), {}, {}, {}};
-  for (const TrialSpec& trial : script.trials) {
-    TrialSpec again = trial;
-    again.id = unused_id(study.script, trial.id + " again", " again");
-    study.script.trials.push_back(std::move(again));
-  }
-  add(study, scene, study.walk, LeftOut::Trial::slow_walk, [&] { return slow_walk(scene, script); });
-  add(study, scene, study.empty, LeftOut::Trial::empty_room, [&] { return empty_room(script); });
-  return study;
-}
-
-namespace {
 
 /// What became of the datasets that took no part in training.
 struct Judged {
@@ -217,15 +202,12 @@ std::vector<PlannedPower> power_of(const ReferenceStudy& reference, const Judged
   std::vector<PlannedPower> power;
   for (std::size_t hypothesis = 1; hypothesis < reference.table.n_hypotheses(); ++hypothesis) {
     for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      PlannedPower one{
-          reference.table.hypothesis_name(hypothesis), strength, {Counted::seen, 0, 0, {0.0, 1.0}, strength}};
+      PlannedPower one{reference.table.hypothesis_name(hypothesis), strength, {disagreement_seen}};
       for (std::size_t i = 0; i < judged.rows.size(); ++i) {
         const TableRow& row = reference.table.rows[judged.rows[i]];
         if (row.hypothesis != hypothesis || strength_of(row.effects.front()) != strength) continue;
-        ++one.seen.of;
-        one.seen.hits += judged.p[i] <= alpha ? 1 : 0;
+        one.seen.count(judged.p[i] <= alpha);
       }
-      if (one.seen.of > 0) one.seen.interval = stats::clopper_pearson(one.seen.hits, one.seen.of);
       power.push_back(std::move(one));
     }
   }
@@ -255,8 +237,7 @@ Settings with_fewer_realizations(Settings settings) {
 
 /// A design before it is judged.
 struct Idea {
-  Design::Kind kind = Design::Kind::as_planned;
-  std::string trial;              ///< of trial_again
+  std::string name, what;         ///< of the design
   std::vector<std::size_t> more;  ///< trials beside those planned
 };
 
@@ -265,13 +246,14 @@ std::vector<Idea> ideas_of(const LongerStudy& study, const ReferenceStudy& refer
   std::vector<Idea> ideas;
   const std::size_t best = most_telling_trial(reference, n);
   if (n > 1) {
-    ideas.push_back({Design::Kind::trial_again, study.script.trials[best].id, {n + best}});
+    const std::string trial = "trial " + study.script.trials[best].id;
+    ideas.push_back({trial + " again", trial + " once more", {n + best}});
   }
-  Idea again{Design::Kind::all_again, {}, {}};
+  Idea again{"all again", "every trial once more", {}};
   for (std::size_t trial = n; trial < 2 * n; ++trial) again.more.push_back(trial);
   ideas.push_back(std::move(again));
-  if (!study.walk.empty()) ideas.push_back({Design::Kind::slow_walk, {}, study.walk});
-  if (!study.empty.empty()) ideas.push_back({Design::Kind::empty_room, {}, study.empty});
+  if (!study.walk.empty()) ideas.push_back({"slow walk", "one person walking slowly through the room", study.walk});
+  if (!study.empty.empty()) ideas.push_back({"empty room", "the empty room", study.empty});
   return ideas;
 }
 
@@ -283,16 +265,19 @@ double minutes_of(const ReferenceStudy& reference, const std::vector<std::size_t
   return rows * reference.frame.window_s / 60.0;
 }
 
-Stage stage_of(const Idea& idea) {
-  using What = Stage::What;
-  constexpr std::array stages{What::judging_planned, What::judging_trial,      What::judging_all_again,
-                              What::judging_walk,    What::judging_empty_room, What::judging_series};
-  Stage stage{stages[static_cast<std::size_t>(idea.kind)]};
-  if (!idea.trial.empty()) stage.effects = {idea.trial};
-  return stage;
-}
-
 }  // namespace
+
+LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
+  LongerStudy study{script, script.trials.size(), {}, {}, {}};
+  for (const TrialSpec& trial : script.trials) {
+    TrialSpec again = trial;
+    again.id = unused_id(study.script, trial.id + " again", " again");
+    study.script.trials.push_back(std::move(again));
+  }
+  add(study, scene, study.walk, "a slow walk", [&] { return slow_walk(scene, script); });
+  add(study, scene, study.empty, "the empty room", [&] { return empty_room(script); });
+  return study;
+}
 
 const Design* PlanResult::best() const {
   const Design* best = nullptr;
@@ -307,31 +292,26 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
   const PlanSettings settings{with_fewer_realizations(asked.analysis), asked.kind, asked.n_replicates};
   LongerStudy study = longer_study(scene, script);
   const auto reference_study = [&](Measured::Kind kind) {
-    return make_reference_study(
-        scene, study.script, settings.analysis,
-        [&](const StudyFrame& frame, std::span<const Series> pilot) {
-          return full_shape(frame, kind, settings.n_replicates, pilot);
-        },
-        context);
+    return make_full_study(scene, study.script, settings.analysis, kind, settings.n_replicates, context);
   };
   const ReferenceStudy reference = reference_study(settings.kind);
-  std::vector<std::size_t> planned(study.n_planned);
-  std::iota(planned.begin(), planned.end(), std::size_t{0});
+  std::vector<std::size_t> planned = stats::numbers_to(study.n_planned);
   const auto judged = [&](const ReferenceStudy& in, const Idea& idea) {
-    context.begin(stage_of(idea));
+    context.begin("judging " + idea.what);
     std::vector<std::size_t> trials = planned;
     trials.insert(trials.end(), idea.more.begin(), idea.more.end());
     return judge_held_back(in, std::move(trials), settings.analysis, context);
   };
-  const Judged base = judged(reference, {});
+  const Idea as_planned{"as planned", "what is planned", {}};
+  const Judged base = judged(reference, as_planned);
   const auto base_bits = by_realization(reference, base);
   PlanResult result;
   result.left_out = std::move(study.left_out);
   result.n_datasets = base.rows.size();
   for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
     result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
-  result.designs.push_back({Design::Kind::as_planned,
-                            {},
+  result.designs.push_back({as_planned.name,
+                            as_planned.what,
                             minutes_of(reference, planned),
                             mean(base.bits),
                             share_right(reference, base),
@@ -339,13 +319,14 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
                             {0.0, 0.0}});
   const auto add = [&](const ReferenceStudy& in, const Idea& idea) {
     const Judged with = judged(in, idea);
-    Design design{idea.kind, idea.trial, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
+    Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
     compare(by_realization(in, with), base_bits, design);
     result.designs.push_back(std::move(design));
   };
   for (const Idea& idea : ideas_of(study, reference)) add(reference, idea);
   if (settings.kind == Measured::Kind::sums) {
-    add(reference_study(Measured::Kind::series), {Design::Kind::second_by_second, {}, {}});
+    add(reference_study(Measured::Kind::series),
+        {"second by second", "the same, second by second instead of sums", {}});
   }
   result.power = power_of(reference, base, settings.analysis.alpha);
   result.confusion = confusion_of(reference, base);

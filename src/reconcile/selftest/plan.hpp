@@ -12,19 +12,12 @@
 
 namespace pirsim::reconcile {
 
-/// A trial that this room doesn't allow.
-struct LeftOut {
-  enum class Trial { slow_walk, empty_room };
-  Trial trial = Trial::slow_walk;
-  std::string error;  ///< of the attempt
-};
-
 struct LongerStudy {
-  ScriptSpec script;               ///< planned trials, each of them again, then what this room allows of the others
-  std::size_t n_planned = 0;       ///< trials
-  std::vector<std::size_t> walk;   ///< index of the slow walk, or none
-  std::vector<std::size_t> empty;  ///< index of the empty room, or none
-  std::vector<LeftOut> left_out;
+  ScriptSpec script;                  ///< planned trials, each of them again, then what this room allows of the others
+  std::size_t n_planned = 0;          ///< trials
+  std::vector<std::size_t> walk;      ///< index of the slow walk, or none
+  std::vector<std::size_t> empty;     ///< index of the empty room, or none
+  std::vector<std::string> left_out;  ///< trials that this room doesn't allow, and why, in words
 };
 
 inline constexpr double slow_walk_m_s = 0.4;  ///< assumed; a stroll is 1 m/s
@@ -42,9 +35,8 @@ struct PlanSettings {
 
 /// One way to go on measuring, judged on simulated datasets that took no part in training.
 struct Design {
-  enum class Kind { as_planned, trial_again, all_again, slow_walk, empty_room, second_by_second };
-  Kind kind = Kind::as_planned;
-  std::string trial;       ///< of trial_again
+  std::string name;        ///< in a table
+  std::string what;        ///< is measured, as part of a sentence
   double minutes = 0.0;    ///< more than what is planned; of the plan itself, all of it
   double bits = 0.0;       ///< told about which effect it is, mean over datasets; 0: no better than chance
   double right = 0.0;      ///< share of datasets whose effect is the likeliest
@@ -68,8 +60,8 @@ struct PlanResult {
   std::vector<std::string> hypotheses;         ///< nothing first
   std::vector<std::vector<double>> confusion;  ///< (n_hypotheses x n_hypotheses) as confusion_of(), of what is planned
   std::vector<PlannedPower> power;
-  std::size_t n_datasets = 0;  ///< judged, for each design
-  std::vector<LeftOut> left_out;
+  std::size_t n_datasets = 0;         ///< judged, for each design
+  std::vector<std::string> left_out;  ///< of the longer study
 
   /// The best next measurement, if one is shown to help.
   [[nodiscard]] const Design* best() const;

@@ -83,57 +83,34 @@ stats::Reliability reliability_of(const SelftestResult& result) {
   std::vector<int> labels;
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one || !c.seen()) continue;
-    probabilities.append_row(std::span<const double>(c.probabilities));
+    probabilities.append_row(c.probabilities);
     labels.push_back(static_cast<int>(std::ranges::find(result.hypotheses, c.truth) - result.hypotheses.begin()));
   }
   return labels.empty() ? stats::Reliability{} : stats::reliability(probabilities, labels);
 }
 
-/// Counts cases.
-class Counter {
- public:
-  explicit Counter(Counted what, Strength strength = Strength::none) {
-    rate_.what = what;
-    rate_.strength = strength;
-  }
-  void count(bool hit) {
-    ++rate_.of;
-    rate_.hits += hit ? 1 : 0;
-  }
-  void add(std::size_t hits, std::size_t of) {
-    rate_.hits += hits;
-    rate_.of += of;
-  }
-  [[nodiscard]] Rate rate() const {
-    Rate rate = rate_;
-    rate.interval = rate.of == 0 ? Interval{0.0, 1.0} : stats::clopper_pearson(rate.hits, rate.of);
-    return rate;
-  }
-
- private:
-  Rate rate_;
-};
-
 void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter alarm(Counted::alarm_on_nothing), named(Counted::name_on_nothing);
+  Rate alarm{alarm_on_nothing}, named{"a name although nothing is hidden"};
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::nothing) continue;
     alarm.count(c.seen());
     named.count(c.verdict == Verdict::named);
   }
-  rates.insert(rates.end(), {alarm.rate(), named.rate()});
+  rates.insert(rates.end(), {alarm, named});
 }
 
 void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter power(Counted::seen), exact(Counted::exact_name), named(Counted::any_name), right(Counted::right_of_names),
-      family(Counted::right_family), wrong(Counted::wrong_name), wrong_family(Counted::wrong_family),
-      in_set(Counted::truth_in_set), none(Counted::none_in_catalogue), coverage(Counted::parameters_covered);
+  Rate power{disagreement_seen}, exact{exact_name}, family{"the right family, given a disagreement"},
+      named{"a name, given a disagreement"}, right{"the right name, given a name"}, wrong{wrong_name},
+      wrong_family{"one wrong family"}, in_set{"the truth in the set, given a disagreement"},
+      none{"none in the catalogue, given a disagreement"}, coverage{"parameters within their 90 % intervals"};
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one) continue;
     power.count(c.seen());
     wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
     wrong_family.count(c.family.has_value() && c.family != effects::find(c.truth).info.family);
-    coverage.add(c.n_covered, c.n_parameters);
+    coverage.hits += c.n_covered;
+    coverage.of += c.n_parameters;
     if (!c.seen()) continue;
     exact.count(is_named(c, c.truth));
     named.count(c.verdict == Verdict::named);
@@ -142,13 +119,16 @@ void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
     in_set.count(contains(c.named, c.truth));
     none.count(c.verdict == Verdict::none_in_catalogue);
   }
-  rates.insert(rates.end(), {power.rate(), exact.rate(), family.rate(), named.rate(), right.rate(), wrong.rate(),
-                             wrong_family.rate(), in_set.rate(), none.rate(), coverage.rate()});
+  rates.insert(rates.end(), {power, exact, family, named, right, wrong, wrong_family, in_set, none, coverage});
 }
 
 void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter seen(Counted::left_out_seen), none(Counted::left_out_none), told_none(Counted::told_left_out_none),
-      misnamed(Counted::left_out_named), outside(Counted::left_out_named_outside);
+  const std::string lacks = "an effect that the catalogue lacks",
+                    none_told = "none in the catalogue, given a disagreement";
+  // Of those that the whole catalogue doesn't name, others are as good as nested.
+  Rate seen{lacks + ": a disagreement seen"}, none{lacks + ": called " + none_told},
+      told_none{lacks + " and the whole one names: called " + none_told}, misnamed{lacks + ": called by one name"},
+      outside{lacks + ": called by one name of another family"};
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::left_out) continue;
     const bool is_family = c.family == effects::find(c.truth).info.family;
@@ -159,27 +139,28 @@ void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
     none.count(c.verdict == Verdict::none_in_catalogue);
     if (is_named(result.cases[c.injected], c.truth)) told_none.count(c.verdict == Verdict::none_in_catalogue);
   }
-  if (seen.rate().of > 0)
-    rates.insert(rates.end(), {seen.rate(), none.rate(), told_none.rate(), misnamed.rate(), outside.rate()});
+  if (seen.of > 0) rates.insert(rates.end(), {seen, none, told_none, misnamed, outside});
 }
 
 void count_motion(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter as_sensor(Counted::motion_as_sensor);
+  Rate as_sensor{"people's motion, in the catalogue or not: called by a name of optics or electronics"};
   for (const InjectedCase& c : result.cases) {
     const bool is_catalogued = c.kind == CaseKind::one || c.kind == CaseKind::left_out;
     if (!is_catalogued || effects::find(c.truth).info.family != effects::Family::motion) continue;
     const bool is_sensor = c.family == effects::Family::optics || c.family == effects::Family::electronics;
     as_sensor.count(c.verdict == Verdict::named && is_sensor);
   }
-  if (as_sensor.rate().of > 0) rates.push_back(as_sensor.rate());
+  if (as_sensor.of > 0) rates.push_back(as_sensor);
 }
 
 void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter one(Counted::pair_in_set), none(Counted::pair_none), wrong(Counted::pair_wrong);
+  Rate one{"two effects, first look: one or both in the set, given a disagreement"},
+      none{"two effects, first look: no single effect will do, given a disagreement"},
+      wrong{"two effects, first look: one wrong name"};
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::two) continue;
     const auto is_hidden = [&](const std::string& name) {
-      return std::ranges::any_of(c.effects, [&](const EffectSpec& effect) { return effect.name == name; });
+      return std::ranges::find(c.effects, name, &EffectSpec::name) != c.effects.end();
     };
     const bool any = std::ranges::any_of(c.named, is_hidden);
     wrong.count(c.verdict == Verdict::named && !any);
@@ -187,12 +168,11 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
     one.count(any);
     none.count(c.verdict == Verdict::none_in_catalogue);
   }
-  if (wrong.rate().of > 0) rates.insert(rates.end(), {one.rate(), none.rate(), wrong.rate()});
+  if (wrong.of > 0) rates.insert(rates.end(), {one, none, wrong});
 }
 
 bool names_other(const std::string& effect, const std::string& other) {
-  const std::vector<std::string>& names = effects::find(effect).info.confused_with;
-  return std::ranges::find(names, other) != names.end();
+  return contains(effects::find(effect).info.confused_with, other);
 }
 
 const std::string& fingerprint_of(const std::string& effect) { return effects::find(effect).info.fingerprint; }
@@ -219,14 +199,13 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
   SelftestResult result;
   for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
     result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
-  context.begin({Stage::What::judging});
-  std::vector<std::size_t> all(injected.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  context.begin("judging");
+  std::vector<std::size_t> all = stats::numbers_to(injected.size());
   judge_all(reference, analyst_without({}), injected, all, {}, context.threads, result.cases);
   result.reliability = reliability_of(result);
   if (settings.leave_out == LeaveOut::none) return result;
   for (const std::string& effect : reference.table.effects) {
-    context.begin({Stage::What::judging_without, {effect}});
+    context.begin("judging by a catalogue that lacks " + effect);
     std::vector<std::size_t> own;
     for (const std::size_t i : all) {
       if (injected[i].kind == CaseKind::one && injected[i].effects.front().name == effect) own.push_back(i);
@@ -238,12 +217,8 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
 
 SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const SelftestSettings& settings,
                         const Context& context) {
-  const ReferenceStudy reference = make_reference_study(
-      scene, script, settings.analysis,
-      [&](const StudyFrame& frame, std::span<const Series> pilot) {
-        return full_shape(frame, settings.kind, settings.n_replicates, pilot);
-      },
-      context);
+  const ReferenceStudy reference =
+      make_full_study(scene, script, settings.analysis, settings.kind, settings.n_replicates, context);
   return judge(reference, inject(reference, settings, context), settings, context);
 }
 
@@ -260,14 +235,13 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
 std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect) {
   std::vector<Rate> rates;
   for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-    Counter seen(Counted::seen, strength), found(Counted::seen_and_in_set, strength);
+    Rate seen{disagreement_seen}, found{"seen and in the set"};
     for (const InjectedCase& c : result.cases) {
       if (c.kind != CaseKind::one || c.truth != effect || c.strength != strength) continue;
       seen.count(c.seen());
       found.count(contains(c.named, effect));
     }
-    rates.push_back(seen.rate());
-    rates.push_back(found.rate());
+    rates.insert(rates.end(), {seen, found});
   }
   return rates;
 }
@@ -284,11 +258,9 @@ std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double le
   std::vector<ConfusedPair> pairs;
   for (const auto& [names, hits] : taken) {
     const auto& [a, b] = names;
-    Rate rate{Counted::confused, hits, cases[a] + cases[b], {}, Strength::none};
+    const Rate rate{"taken for each other", hits, cases[a] + cases[b]};
     if (hits < fewest_cases || rate.value() < least_share) continue;
-    rate.interval = stats::clopper_pearson(rate.hits, rate.of);
-    pairs.push_back(
-        {a, b, std::move(rate), names_other(a, b) || names_other(b, a), fingerprint_of(a), fingerprint_of(b)});
+    pairs.push_back({a, b, rate, names_other(a, b) || names_other(b, a), fingerprint_of(a), fingerprint_of(b)});
   }
   std::ranges::stable_sort(pairs, std::ranges::greater{}, [](const ConfusedPair& pair) { return pair.rate.value(); });
   return pairs;

@@ -76,43 +76,26 @@ struct InjectedCase {
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
 
-/// What a self-test counts.
-enum class Counted {
-  alarm_on_nothing,  ///< a disagreement although nothing is hidden
-  name_on_nothing,
-  seen,        ///< a disagreement
-  exact_name,  ///< given a disagreement, as the family, any name, the truth in the set and none in the catalogue
-  right_family,
-  any_name,
-  right_of_names,  ///< given a name
-  wrong_name,
-  wrong_family,
-  truth_in_set,
-  none_in_catalogue,
-  parameters_covered,  ///< by their 90 % intervals
-  left_out_seen,
-  left_out_none,       ///< called none in the catalogue, given a disagreement
-  told_left_out_none,  ///< the same of those that the whole catalogue gives the right name: others are as good as
-                       ///< nested
-  left_out_named,
-  left_out_named_outside,  ///< by a name of another family
-  motion_as_sensor,        ///< people's motion, in or left out of the catalogue: a name of optics or electronics
-  pair_in_set,
-  pair_none,
-  pair_wrong,
-  seen_and_in_set,  ///< of one effect and strength
-  confused          ///< two effects taken for each other
-};
+// What a self-test counts and tells first.
+inline constexpr const char* alarm_on_nothing = "a disagreement although nothing is hidden";
+inline constexpr const char* disagreement_seen = "a disagreement seen";
+inline constexpr const char* exact_name = "exactly the right name, given a disagreement";
+inline constexpr const char* wrong_name = "one wrong name";
 
-/// A share with its exact 95 % interval.
+/// A share.
 struct Rate {
-  Counted what = Counted::seen;
+  std::string what;  ///< is counted, in words
   std::size_t hits = 0, of = 0;
-  Interval interval;                   ///< empty (0 to 1) without any case
-  Strength strength = Strength::none;  ///< of one effect, where only that is counted
+
+  void count(bool hit) {
+    ++of;
+    hits += hit ? 1 : 0;
+  }
   [[nodiscard]] double value() const noexcept {
     return of == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(of);
   }
+  /// Exact, 95 %; 0 to 1 without any case.
+  [[nodiscard]] Interval interval() const { return of == 0 ? Interval{0.0, 1.0} : stats::clopper_pearson(hits, of); }
 };
 
 struct SelftestResult {
@@ -135,7 +118,8 @@ struct SelftestResult {
 /// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
 /// coverage; what becomes of effects that the catalogue lacks, and of pairs.
 [[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
-/// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
+/// Of one effect, of weak, medium and strong ones each: how often a disagreement is seen, and how often the effect is
+/// then in the set.
 [[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);
 /// Two effects that are often taken for each other.
 struct ConfusedPair {

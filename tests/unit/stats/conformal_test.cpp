@@ -60,13 +60,14 @@ TEST_CASE(
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
     const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1), unknown = draw(300, {3}, 10 * study + 2);
-    const auto of_known = classifier.classify(known.features);
-    for (std::size_t r = 0; r < of_known.size(); ++r) {
+    for (std::size_t r = 0; r < known.features.rows(); ++r) {
+      const Classification of_known = classifier.classify(known.features.row(r));
       const auto own = static_cast<std::size_t>(known.labels[r]);
-      wrongly += of_known[r].p[own] <= 0.1 ? 1.0 / 2700 : 0.0;
-      relative_only += of_known[r].p_relative[own] <= 0.1 ? 1.0 / 2700 : 0.0;
+      wrongly += of_known.p[own] <= 0.1 ? 1.0 / 2700 : 0.0;
+      relative_only += of_known.p_relative[own] <= 0.1 ? 1.0 / 2700 : 0.0;
     }
-    for (const Classification& one : classifier.classify(unknown.features)) {
+    for (std::size_t r = 0; r < unknown.features.rows(); ++r) {
+      const Classification one = classifier.classify(unknown.features.row(r));
       for (std::size_t k = 0; k < one.p.size(); ++k) least = std::min(least, one.p[k] - classifier.least_p(k));
       unknown_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
       unknown_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
@@ -88,9 +89,8 @@ TEST_CASE(
   const ConformalClassifier classifier = fit(5);
   const Labelled fresh = draw(1000, {0, 1, 2}, 6);
   Matrix<double> probabilities(fresh.features.rows(), 3);
-  const auto all = classifier.classify(fresh.features);
-  for (std::size_t r = 0; r < all.size(); ++r)
-    std::copy(all[r].probabilities.begin(), all[r].probabilities.end(), probabilities.row(r).begin());
+  for (std::size_t r = 0; r < fresh.features.rows(); ++r)
+    std::ranges::copy(classifier.classify(fresh.features.row(r)).probabilities, probabilities.row(r).begin());
   CHECK(reliability(probabilities, fresh.labels).expected_calibration_error < 0.05);
 }
 
@@ -130,9 +130,11 @@ TEST_CASE("a small change of every column is strange where a block holds their s
   const auto refused = [&](std::vector<std::vector<std::size_t>> blocks) {
     const auto classifier = ConformalClassifier::fit(table, labels, 2, test::split_by_class(labels),
                                                      {.pooled = {.trees = {.trees = 20}}, .blocks = blocks});
-    const auto found = classifier.classify(draw_rows(200, 0.5F));
-    const auto n = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.p_absolute[0] <= 0.05; });
-    return static_cast<double>(n) / 200.0;
+    const Matrix<float> changed = draw_rows(200, 0.5F);
+    double share = 0.0;
+    for (std::size_t r = 0; r < 200; ++r)
+      share += classifier.classify(changed.row(r)).p_absolute[0] <= 0.05 ? 1.0 / 200 : 0.0;
+    return share;
   };
   CHECK(refused({cells, {40}}) > 0.6);
   CHECK(refused({cells}) < 0.4);

@@ -30,6 +30,11 @@ Labelled two_normals(std::size_t rows, std::size_t columns, double distance, dou
   return data;
 }
 
+int likelier(const Discriminant& fitted, std::span<const float> row) {
+  const std::vector<double> logs = fitted.log_densities(row);
+  return logs[1] > logs[0] ? 1 : 0;
+}
+
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 }  // namespace
@@ -42,8 +47,7 @@ TEST_CASE("a discriminant is wrong as rarely as normal theory allows", "[stats]"
   const Labelled test = two_normals(8000, 6, distance, correlation, 1);
   const Discriminant fitted = Discriminant::fit(train.features, train.labels, 2);
   int wrong = 0;
-  for (std::size_t r = 0; r < 8000; ++r)
-    wrong += (fitted.probabilities(test.features.row(r))[1] > 0.5 ? 1 : 0) == test.labels[r] ? 0 : 1;
+  for (std::size_t r = 0; r < 8000; ++r) wrong += likelier(fitted, test.features.row(r)) == test.labels[r] ? 0 : 1;
   const double expected = normal_cdf(-0.5 * distance / std::sqrt(1.0 - correlation * correlation));
   const double standard_error = std::sqrt(expected * (1.0 - expected) / 8000);
   CHECK(std::abs(wrong / 8000.0 - expected) < 4 * standard_error);
@@ -107,11 +111,7 @@ TEST_CASE("more columns than rows and columns without spread don't stop a discri
   for (std::size_t r = 0; r < 40; ++r) data.features(r, 59) = 7.0F;
   const Discriminant fitted = Discriminant::fit(data.features, data.labels, 2);
   int right = 0;
-  for (std::size_t r = 0; r < 40; ++r)
-    right += (fitted.log_densities(data.features.row(r))[1] > fitted.log_densities(data.features.row(r))[0]) ==
-                     (data.labels[r] == 1)
-                 ? 1
-                 : 0;
+  for (std::size_t r = 0; r < 40; ++r) right += likelier(fitted, data.features.row(r)) == data.labels[r] ? 1 : 0;
   CHECK(right == 40);
   CHECK_THROWS_AS(fitted.project(std::vector<float>(3, 0.0F)), Error);
   CHECK_THROWS_AS(Discriminant::fit(data.features, data.labels, 3), Error);

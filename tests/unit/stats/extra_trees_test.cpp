@@ -27,9 +27,9 @@ Labelled checkerboard(std::size_t rows, std::uint32_t study) {
 }
 
 double accuracy(const ExtraTrees& forest, const Labelled& data) {
-  const Matrix<double> shares = forest.probabilities(data.features, 1);
   int right = 0;
-  for (std::size_t r = 0; r < data.labels.size(); ++r) right += (shares(r, 1) > 0.5 ? 1 : 0) == data.labels[r] ? 1 : 0;
+  for (std::size_t r = 0; r < data.labels.size(); ++r)
+    right += (forest.probabilities(data.features.row(r))[1] > 0.5 ? 1 : 0) == data.labels[r] ? 1 : 0;
   return right / static_cast<double>(data.labels.size());
 }
 

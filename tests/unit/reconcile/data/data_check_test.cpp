@@ -195,7 +195,7 @@ TEST_CASE("a minute without any motion among dense motion is told with its place
   };
   const auto findings = check(gap);
   check_one(findings, What::all_silent, {});
-  const DataFinding::Place& place = findings.front().places.front();
+  const DataFinding::Rows& place = findings.front().places.front();
   CHECK((place.trial == "B" && place.from_row <= 31 && place.from_row > 25 && place.to_row >= 85));
   CHECK(check(gap, gap).empty());
 }

@@ -46,7 +46,7 @@ TEST_CASE("measured rows in pirsim's own format keep their bits and their main p
   CHECK(measured.runs[0].bits[0] == 1);
   CHECK(measured.runs[1].bits[0] == 0);
   REQUIRE(measured.notes.size() == 1);
-  CHECK_THAT(in_words(measured.notes[0]), contains("column 'people' is left out"));
+  CHECK_THAT(measured.notes[0], contains("column 'people' is left out"));
   CHECK(measured.n_replicates() == 1);
 }
 
@@ -86,10 +86,10 @@ TEST_CASE("gaps and empty readings become unknown and are told", "[measured]") {
   CHECK(measured.runs[0].bits[29 * 2] == unknown_bit);
   CHECK(measured.runs[0].bits[29 * 2 + 1] == 1);
   REQUIRE(measured.notes.size() == 4);
-  CHECK_THAT(in_words(measured.notes[0]), contains("column 'people' is left out"));
-  CHECK_THAT(in_words(measured.notes[1]), contains("1 row is missing"));
-  CHECK_THAT(in_words(measured.notes[2]), contains("1 reading is empty"));
-  CHECK_THAT(in_words(measured.notes[3]), contains("nothing of S2"));
+  CHECK_THAT(measured.notes[0], contains("column 'people' is left out"));
+  CHECK_THAT(measured.notes[1], contains("1 row is missing"));
+  CHECK_THAT(measured.notes[2], contains("1 reading is empty"));
+  CHECK_THAT(measured.notes[3], contains("nothing of S2"));
 }
 
 TEST_CASE("rows without phases are taken for the counted phases", "[measured]") {
@@ -98,7 +98,7 @@ TEST_CASE("rows without phases are taken for the counted phases", "[measured]") 
   const Measured measured = parse_measured(text, "m.csv", two_by_two());
   CHECK(measured.runs.at(0).main_begin == 0);
   CHECK(measured.runs.at(0).main_end == 50);
-  CHECK_THAT(in_words(measured.notes.at(0)), contains("no column 'phase'"));
+  CHECK_THAT(measured.notes.at(0), contains("no column 'phase'"));
 }
 
 TEST_CASE("runs are numbered from 1 in every trial, whatever the file calls them", "[measured]") {
@@ -126,7 +126,7 @@ TEST_CASE("a run that was recorded late keeps its place where no phase tells it"
   CHECK(late.runs.at(0).n_rows(1) == 45);
   CHECK(late.runs.at(0).bits[4] == unknown_bit);
   CHECK(late.runs.at(0).bits[5] == 1);
-  CHECK_THAT(in_words(late.notes.at(0)), contains("5 rows are missing"));
+  CHECK_THAT(late.notes.at(0), contains("5 rows are missing"));
   const StudyFrame phased{{"S1"}, {"PIR1"}, {"working"}, 1.0};
   CHECK(parse_measured(text, "m.csv", phased).runs.at(0).n_rows(1) == 40);
   CHECK_THROWS_WITH(parse_measured("time_s,PIR1\n1700000000,1\n1700000001,1\n", "m.csv", frame),
@@ -159,7 +159,7 @@ TEST_CASE("sums are read with seats as trials and empty ones are left out", "[me
   REQUIRE(measured.sums.size() == 5);
   CHECK(measured.sums[0].seconds == 39.0);
   CHECK(measured.sums[4].seconds == 1.5);
-  CHECK_THAT(in_words(measured.notes.at(0)), contains("1 sum is empty"));
+  CHECK_THAT(measured.notes.at(0), contains("1 sum is empty"));
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds\nS1,PIR1,3\nS1,PIR1,4\n", "m.csv", frame),
                     contains("appear twice"));
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds\nS1,PIR1,-3\n", "m.csv", frame), contains("negative"));

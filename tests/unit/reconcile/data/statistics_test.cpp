@@ -240,7 +240,7 @@ Measured measured_of(Series run) {
   return measured;
 }
 
-std::vector<DataNote> notes(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
+std::vector<std::string> notes(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
   const Measured measured = measured_of(run);
   return notes_on(of, shape_of(of, measured, pilot), measured, pilot);
 }
@@ -248,7 +248,7 @@ std::vector<DataNote> notes(const StudyFrame& of, const Series& run, const std::
 std::string only_note(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
   const auto all = notes(of, run, pilot);
   REQUIRE(all.size() == 1);
-  return in_words(all.front());
+  return all.front();
 }
 
 }  // namespace

@@ -12,18 +12,18 @@ using namespace pirsim::reconcile;
 namespace pirsim {
 
 template <>
-struct Fields<reconcile::Units> {
+struct Fields<reconcile::DayParts> {
   static constexpr std::tuple all{
-      field("trial", &reconcile::Units::trial),      field("n_days", &reconcile::Units::n_days),
-      field("n_rows", &reconcile::Units::n_rows),    field("of_row", &reconcile::Units::of_row),
-      field("people", &reconcile::Units::people),    field("names", &reconcile::Units::names),
-      field("begins_s", &reconcile::Units::begins_s)};
+      field("trial", &reconcile::DayParts::trial),      field("n_days", &reconcile::DayParts::n_days),
+      field("n_rows", &reconcile::DayParts::n_rows),    field("of_row", &reconcile::DayParts::of_row),
+      field("people", &reconcile::DayParts::people),    field("names", &reconcile::DayParts::names),
+      field("begins_s", &reconcile::DayParts::begins_s)};
 };
 template <>
 struct Fields<StudyFrame> {
   static constexpr std::tuple all{field("trials", &StudyFrame::trials), field("sensors", &StudyFrame::sensors),
                                   field("counted_phases", &StudyFrame::counted_phases),
-                                  field("window_s", &StudyFrame::window_s), field("units", &StudyFrame::units)};
+                                  field("window_s", &StudyFrame::window_s), field("day_parts", &StudyFrame::day_parts)};
 };
 template <>
 struct Fields<TableSettings> {

@@ -17,10 +17,8 @@ const ReferenceStudy& three_trials() {
   static const ReferenceStudy reference = [] {
     Settings settings;
     settings.table = {60, 60, 60, {"false_triggers"}};
-    return make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S1", "S4", "S8"}, 60.0),
-                                settings, [](const StudyFrame& frame, std::span<const Series> pilot) {
-                                  return full_shape(frame, Measured::Kind::series, 1, pilot);
-                                });
+    return make_full_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S1", "S4", "S8"}, 60.0),
+                           settings, Measured::Kind::series, 1);
   }();
   return reference;
 }

@@ -105,13 +105,13 @@ TEST_CASE("a strength is estimated as well as if the sensor were known", "[recon
   std::ranges::copy(training.features.values(), wide.values().begin());
   std::ranges::copy(fresh.features.values(), fresh_wide.values().begin());
   for (std::size_t i = 0; i < 600; ++i) yaws(i, 0) = training.drawn(i).parameters.at("yaw_deg");
-  const stats::Matrix<double> one_for_all = stats::ParameterEstimator::fit(wide, yaws).estimate(fresh_wide);
+  const stats::ParameterEstimator one_for_all = stats::ParameterEstimator::fit(wide, yaws);
   double own = 0.0, all = 0.0, n = 0.0;
   for (std::size_t i = 0; i < 400; ++i) {
     const double yaw = fresh.drawn(i).parameters.at("yaw_deg");
     if (std::abs(yaw) < clear) continue;
     own += std::pow(estimate.estimates()(i, 1) - yaw, 2);
-    all += std::pow(one_for_all(i, 0) - yaw, 2);
+    all += std::pow(one_for_all.estimate(fresh_wide.row(i))[0] - yaw, 2);
     n += 1.0;
   }
   REQUIRE(n > 150.0);

@@ -60,10 +60,8 @@ TEST_CASE("a hold of ten seconds is found beyond those that were looked for, oth
   Settings settings;
   settings.table = {60, 60, 60, {"pulse_stretching"}};
   const ReferenceStudy reference =
-      make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S1", "S4", "S8"}, 60.0),
-                           settings, [](const StudyFrame& frame, std::span<const Series> pilot) {
-                             return full_shape(frame, Measured::Kind::series, 1, pilot);
-                           });
+      make_full_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S1", "S4", "S8"}, 60.0), settings,
+                      Measured::Kind::series, 1);
   const auto measured_with = [&](const FittedEffect& made_by) {
     const SimulatedRealization fresh(reference.source, reference.frame, 500000, 1);
     return statistics_of(reference.frame, reference.shape, reference.table.profile,

@@ -53,7 +53,10 @@ std::vector<ResidualDriver> told(const DataShape& shape, const ContrastData& mea
   return telling_contrasts(frame, shape, measured, simulated, 0.05);
 }
 
-using When = ResidualDriver::When;
+bool begins_at_any(const ResidualDriver& driver, const std::vector<std::string>& trials) {
+  return std::ranges::any_of(
+      trials, [&](const std::string& trial) { return driver.when == "from about trial " + trial + " on"; });
+}
 
 }  // namespace
 
@@ -63,10 +66,9 @@ TEST_CASE("a step of the session is told with its trial and its side", "[reconci
     CAPTURE(later);
     const auto found = told(shape, drawn(shape, 1, [&](std::size_t place, auto) { return place < 6 ? 0.3 : later; }));
     REQUIRE_FALSE(found.empty());
-    CHECK(found.front().who == ResidualDriver::Who::all_sensors);
-    CHECK(found.front().when == When::from_trial);
-    CHECK_THAT("6 7 8", contains(found.front().since));  // the true one or a neighbour
-    CHECK(found.front().up == (later > 0.3));
+    CHECK(found.front().who == "all sensors");
+    CHECK(begins_at_any(found.front(), {"6", "7", "8"}));  // the true one or a neighbour
+    CHECK_THAT(found.front().what, contains(later > 0.3 ? "more gaps" : "fewer gaps"));
   }
 }
 
@@ -74,22 +76,21 @@ TEST_CASE("a step of one sensor is its own, and a trend is told", "[reconcile]")
   const DataShape shape = shape_with(1);
   const auto of_one =
       told(shape, drawn(shape, 2, [](std::size_t place, std::size_t s) { return s == 1 && place >= 4 ? 0.6 : 0.3; }));
-  const auto own = std::ranges::find(of_one, ResidualDriver::Who::sensor, &ResidualDriver::who);
+  const auto own = std::ranges::find(of_one, "B", &ResidualDriver::who);
   REQUIRE(own != of_one.end());
-  CHECK(own->name == "B");
-  CHECK_THAT("4 5 6", contains(own->since));
+  CHECK(begins_at_any(*own, {"4", "5", "6"}));
   const auto trend =
       told(shape, drawn(shape, 3, [](std::size_t place, auto) { return 0.1 + 0.06 * static_cast<double>(place); }));
   REQUIRE_FALSE(trend.empty());
-  CHECK(trend.front().when != When::always);
-  CHECK(trend.front().up);
+  CHECK_FALSE(trend.front().when.empty());
+  CHECK_THAT(trend.front().what, contains("more"));
 }
 
 TEST_CASE("one repetition follows the other, and of three runs no session is told", "[reconcile]") {
   const DataShape shape = shape_with(2);
   const auto found = told(shape, drawn(shape, 4, [](std::size_t place, auto) { return place < 12 ? 0.3 : 0.5; }));
   REQUIRE_FALSE(found.empty());
-  CHECK_THAT("2 of run 2, 3 of run 2, 4 of run 2", contains(found.front().since));
+  CHECK(begins_at_any(found.front(), {"2 of run 2", "3 of run 2", "4 of run 2"}));
   DataShape three = shape_with(1);
   three.runs.resize(3);
   CHECK(told(three, drawn(three, 5, [](std::size_t place, auto) { return place < 1 ? 0.1 : 0.9; })).empty());
@@ -99,7 +100,7 @@ TEST_CASE("silence at the same moments is told if it is oftener, not if it is le
   const DataShape shape = shape_with(1);
   const auto more = told(shape, drawn(shape, 6, usual, 1.2));
   REQUIRE(more.size() == 1);
-  CHECK(more.front().how == ResidualDriver::How::silent_together);
+  CHECK_THAT(more.front().what, contains("silent at the same moments"));
   CHECK(told(shape, drawn(shape, 6, usual, -1.2)).empty());
 }
 

@@ -57,7 +57,7 @@ struct ToyStudy {
     const Matrix<float> drawn = toy::draw_datasets(effect, rows, seconds, 3);
     const Matrix<double> statistics = in_double(drawn);
     for (std::size_t row = 0; row < rows; ++row) {
-      const double p = global_envelope_test(statistics.row(row), null, {.rank = PointwiseRank::continuous}).p;
+      const double p = global_envelope_test(statistics.row(row), null).p;
       const Classification found = classifier.classify(drawn.row(row));
       std::vector<HypothesisScore> scores;
       for (std::size_t k = 0; k < toy::n_known; ++k)

@@ -24,9 +24,7 @@ ReferenceStudy make(const std::vector<EffectSpec>& already, Measured::Kind kind)
   script.effects = already;
   Settings settings;
   settings.table = {500, 500, 500, {"false_triggers", "missed_triggers", "pulse_stretching"}};
-  return make_reference_study(
-      test::shipped_scene("meeting_room.gltf"), script, settings,
-      [&](const StudyFrame& frame, std::span<const Series> pilot) { return full_shape(frame, kind, 1, pilot); });
+  return make_full_study(test::shipped_scene("meeting_room.gltf"), script, settings, kind, 1);
 }
 const ReferenceStudy& plain_reference() {
   static const ReferenceStudy reference = make({}, Measured::Kind::series);

@@ -38,10 +38,7 @@ Settings quick() {
 
 const ReferenceStudy& reference_study() {
   static const ReferenceStudy reference =
-      make_reference_study(test::shipped_scene("meeting_room.gltf"), short_study(), quick(),
-                           [](const StudyFrame& frame, std::span<const Series> pilot) {
-                             return full_shape(frame, Measured::Kind::series, 1, pilot);
-                           });
+      make_full_study(test::shipped_scene("meeting_room.gltf"), short_study(), quick(), Measured::Kind::series, 1);
   return reference;
 }
 
@@ -148,22 +145,22 @@ TEST_CASE("effects are trained in the same realizations and calibrated in realiz
   const ReferenceTable table =
       make_reference_table(reference.source, reference.frame, reference.shape, reference.table.profile,
                            {50, 20, 20, hypotheses}, std::filesystem::path());
-  const auto realizations = [&](std::size_t hypothesis, Part part) {
+  const auto realizations = [&](std::size_t hypothesis, Subset subset) {
     std::set<std::uint32_t> found;
-    for (const std::size_t row : rows_of(table, hypothesis, part)) found.insert(table.rows[row].realization);
+    for (const std::size_t row : rows_of(table, hypothesis, subset)) found.insert(table.rows[row].realization);
     return found;
   };
-  CHECK(realizations(0, Part::all).size() == 50);
-  std::set<std::uint32_t> of_any, of_all = realizations(1, Part::calibration);
+  CHECK(realizations(0, Subset::all).size() == 50);
+  std::set<std::uint32_t> of_any, of_all = realizations(1, Subset::calibration);
   for (std::size_t hypothesis = 1; hypothesis <= hypotheses.size(); ++hypothesis) {
-    CHECK(realizations(hypothesis, Part::training) == realizations(1, Part::training));
-    const std::set<std::uint32_t> own = realizations(hypothesis, Part::calibration);
+    CHECK(realizations(hypothesis, Subset::training) == realizations(1, Subset::training));
+    const std::set<std::uint32_t> own = realizations(hypothesis, Subset::calibration);
     CHECK(own.size() == 8);
     of_any.insert(own.begin(), own.end());
     std::erase_if(of_all, [&](std::uint32_t realization) { return !own.contains(realization); });
   }
-  CHECK(realizations(1, Part::training).size() == 12);
-  CHECK(of_any == realizations(0, Part::calibration));
+  CHECK(realizations(1, Subset::training).size() == 12);
+  CHECK(of_any == realizations(0, Subset::calibration));
   CHECK(of_all.empty());
 }
 
@@ -182,16 +179,15 @@ TEST_CASE("an injected effect is located and named and nothing is not", "[reconc
 }
 
 TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][minutes][three-seats]") {
-  ReferenceTable shuffled = reference_study().table;
+  ReferenceStudy shuffled = reference_study();
   Stream stream({5, 0, 0, Purpose::test});
-  for (std::size_t i = shuffled.rows.size(); i > 1; --i) {
-    TableRow &a = shuffled.rows[i - 1], &b = shuffled.rows[stream.index(static_cast<std::uint32_t>(i))];
+  std::vector<TableRow>& rows = shuffled.table.rows;
+  for (std::size_t i = rows.size(); i > 1; --i) {
+    TableRow &a = rows[i - 1], &b = rows[stream.index(static_cast<std::uint32_t>(i))];
     std::swap(a.hypothesis, b.hypothesis);
     std::swap(a.effects, b.effects);
   }
-  const ReferenceStudy& reference = reference_study();
-  const TableView shuffled_view(reference.source.scene, reference.frame, reference.knowledge, shuffled,
-                                all_trials(reference.frame), 0);
+  const TableView shuffled_view(shuffled, all_trials(shuffled.frame), 0);
   const HypothesisClassifier& honest = analyst().classifier();
   const HypothesisClassifier confused(shuffled_view, {0.05, 60}, {});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
@@ -240,11 +236,11 @@ TEST_CASE("an effect is calibrated on held-back datasets in which the global tes
   const auto view = reference_study().view(all_trials(reference_study().frame), 0);
   const SeenRows seen = seen_rows(*view, 0.05);
   REQUIRE(seen.size() == table.n_hypotheses());
-  CHECK(seen[0] == rows_of(table, 0, Part::calibration));
+  CHECK(seen[0] == rows_of(table, 0, Subset::calibration));
   for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis) {
     double greatest_taken = 0.0, least_left = 1.0;
     std::size_t n_seen = 0;
-    const std::vector<std::size_t> own = rows_of(table, hypothesis, Part::calibration);
+    const std::vector<std::size_t> own = rows_of(table, hypothesis, Subset::calibration);
     for (const std::size_t row : own) {
       const double p = view->p(table.statistics.row(row));
       n_seen += p <= 0.05 ? 1 : 0;
@@ -286,7 +282,7 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
 TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const FeatureMap map(reference.frame, reference.knowledge,
-                       reference.table.statistics.select_rows(rows_of(reference.table, 0, Part::training)), {1});
+                       reference.table.statistics.select_rows(rows_of(reference.table, 0, Subset::training)), {1});
   const std::vector<float> nothing_measured(n_statistics(reference.frame), std::nanf(""));
   CHECK(map.features(nothing_measured).size() == map.names().size());
 }

@@ -11,14 +11,14 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-FeatureName mean_of(const char* statistic) { return {FeatureName::Kind::mean, {}, {}, statistic}; }
+FeatureName mean_of(const std::string& statistic) { return {"mean " + statistic, statistic, "all cells, mean"}; }
 
 Location two_cells() {
   Location location;
   location.p = 0.01;
   location.n_simulated = 999;
   location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
-  location.envelope = {{{FeatureName::Kind::cell, "S1", "PIR1", "seconds"}, 2.0, 0.0, -1.0, 0.5, 0.01},
+  location.envelope = {{{"S1 PIR1 seconds", "seconds", "S1 PIR1"}, 2.0, 0.0, -1.0, 0.5, 0.01},
                        {mean_of("longest_gap"), -0.5, 0.0, -1.0, 1.0, 0.9}};
   return location;
 }
@@ -40,9 +40,14 @@ Outcome named() {
   Outcome outcome;
   outcome.verdict = Verdict::named;
   outcome.location = two_cells();
-  outcome.candidates = {
-      {{"soft_zone_edges", 0.9, 0.5, 0.6, 1.0}, effects::Family::optics, true, reason::NotRuledOut{1.0}},
-      {{"fidgeting", 0.1, 0.01, 0.6, 0.02}, effects::Family::motion, false, reason::RuledOut{0.01, {}}}};
+  outcome.candidates = {{{"soft_zone_edges", 0.9, 0.5, 0.6, 1.0},
+                         effects::Family::optics,
+                         true,
+                         {"Kept", "it can have made these data."}},
+                        {{"fidgeting", 0.1, 0.01, 0.6, 0.02},
+                         effects::Family::motion,
+                         false,
+                         {"Dropped", "another explains the data better than is usual for its own (p = 0.01)."}}};
   outcome.named = {"soft_zone_edges"};
   outcome.fits = {fitted()};
   outcome.verification.emplace();
@@ -101,13 +106,11 @@ TEST_CASE("an envelope without width lets nothing through but its one value", "[
 
 TEST_CASE("parts of the time and pairs of sensors have rows of their own, and each point says whose it is",
           "[report]") {
-  FeatureName part{FeatureName::Kind::share_of_time}, pair{FeatureName::Kind::together, {}, "PIR1", {}, "PIR2"};
-  part.part = 3;
-  part.n_parts = 18;
   Location location;
-  location.envelope = {{part, 0.0, 0.0, -1.0, 1.0, 1.0}, {pair, 0.0, 0.0, -1.0, 1.0, 1.0}};
-  part.sensor = "PIR1";
-  location.envelope.push_back({part, 0.0, 0.0, -1.0, 1.0, 1.0});
+  for (const auto& [text, statistic] :
+       {std::pair("all sensors, part 3 of 18 of the time", "share_of_time"),
+        std::pair("PIR1 while PIR2 moves", "together"), std::pair("PIR1, part 3 of 18 of the time", "share_of_time")})
+    location.envelope.push_back({{text, statistic}, 0.0, 0.0, -1.0, 1.0, 1.0});
   const io::BandChart chart = envelope_chart(location, 0.05);
   REQUIRE(chart.rows.size() == 2);
   CHECK(chart.rows[0].name == "how motion spreads over the time");

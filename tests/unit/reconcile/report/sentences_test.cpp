@@ -58,8 +58,8 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
 }
 
 TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
-  const std::string reason = in_words(reason::LessLikely{0.6, 0.06, "seat_shift", 0.9});
-  CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
+  const Reason reason = less_likely({.probability = 0.06, .p = 0.6}, {.hypothesis = "seat_shift", .probability = 0.9});
+  CHECK_THAT(reason.why, contains("much less likely than seat_shift (0.06 against 0.9)"));
 }
 
 TEST_CASE("of a model with effects applied it is said whether it passes, and what may be missing beside them",
@@ -77,18 +77,18 @@ TEST_CASE("a name that doesn't do when it is applied is taken back with that rea
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"trigger_bursts", 0.99}});
   outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
   outcome.candidates.front().kept = false;
-  outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
+  outcome.candidates.front().reason.what = Reason::What::refused_when_applied;
   const std::string told = sentence(outcome);
   CHECK_THAT(told, contains("The measurement shows something that isn't in the catalogue."));
   CHECK_THAT(told, contains("It looks most like trigger_bursts, but a simulation with that still differs from the data "
                             "(p = 0.005)."));
-  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p = 0.005)"));
 }
 
 TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_scatter", 0.9}});
   outcome.candidates.front().kept = false;
-  outcome.candidates.front().reason = reason::LikeImpostors{0.02};
+  outcome.candidates.front().score.p_own = 0.02;
+  outcome.candidates.front().reason = like_impostors(outcome.candidates.front().score);
   CHECK_THAT(sentence(outcome), contains("It looks most like seat_scatter, but seat_scatter itself seldom makes "
                                          "such data (p = 0.02): more probably another cause imitates it."));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: other things that are taken for it"));
@@ -96,7 +96,7 @@ TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
 
 TEST_CASE("of an effect that does when it is applied and was dropped all the same both is said", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"labels_swapped", 0.99}});
-  outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};
+  outcome.candidates.front().reason = reason_of({.p_relative = 0.5, .p_absolute = 0.01, .p = 0.02}, false, 0.05);
   outcome.looks.push_back({{"labels_swapped"}, 0.025, 0.524, {}});
   CHECK(details(outcome) ==
         std::vector<std::string>{"The closest known cause is labels_swapped: with it applied, the test of everything "
@@ -108,23 +108,15 @@ TEST_CASE("what a name leaves over is told beside it, and nothing if there is no
   Outcome outcome = outcome_of(Verdict::named, {{"missed_triggers", 0.99}});
   outcome.left_over.emplace();
   const std::vector<std::string> without = details(outcome);
-  ResidualDriver later;
-  later.who = ResidualDriver::Who::sensor;
-  later.name = "PIR2";
-  later.when = ResidualDriver::When::from_trial;
-  later.since = "S6";
-  later.how = ResidualDriver::How::with_gaps;
-  ResidualDriver together;
-  together.how = ResidualDriver::How::silent_together;
-  outcome.left_over->drivers = {later, together};
+  outcome.left_over->drivers = {
+      {.who = "PIR2", .when = "from about trial S6 on", .what = "motion has more gaps", .p = 0.01},
+      {.who = "all sensors", .what = "silent at the same moments", .p = 0.03}};
   std::vector<std::string> with = details(outcome);
   REQUIRE(with.size() == without.size() + 1);
-  CHECK_THAT(with.back(), contains("Something else shows:") && contains("PIR2") && contains("from about trial S6 on") &&
-                              contains("motion has more gaps than before") &&
-                              contains("silent at the same moments oftener than by chance"));
-  outcome.left_over->drivers.front().when = ResidualDriver::When::from_trial_to_trial;
-  outcome.left_over->drivers.front().up = false;
-  CHECK_THAT(details(outcome).back(), contains("from trial to trial") && contains("motion has fewer and fewer gaps"));
+  CHECK(
+      with.back() ==
+      "Something else shows: PIR2, from about trial S6 on: motion has more gaps (p = 0.01); all sensors: silent at the "
+      "same moments (p = 0.03).");
 }
 
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
@@ -147,7 +139,9 @@ TEST_CASE("improbable effects that might have made the data are told with their 
   outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
   CHECK_THAT(sentence(outcome),
              contains("The likelier ones of the catalogue's effects are ruled out. seat_shift and body_size"));
-  CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p = 0.6)"));
+  const Reason improbable = reason_of({.p = 0.6}, false, 0.05);
+  CHECK(improbable.decision == "Dropped");
+  CHECK_THAT(improbable.why, contains("by itself it might have made these data (p = 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
   CHECK_THAT(sentence(outcome), contains("No effect of the catalogue is likely"));
 }
@@ -203,7 +197,7 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
           contains("Of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
   none.candidates.front().score.p = 0.01;
   CHECK_THAT(sentence(none), contains("No effect of those looked for is likely"));
-  none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
+  none.candidates.front().reason.what = Reason::What::refused_when_applied;
   none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
   CHECK(details(none).back() == "None of the others that were tried beside it explains what is left.");
   const std::string page = to_html(report_page(none));

@@ -15,10 +15,8 @@ using namespace pirsim::reconcile;
 namespace {
 
 ReferenceStudy study_of(const Settings& analysis) {
-  return make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 60.0), analysis,
-                              [](const StudyFrame& frame, std::span<const Series> pilot) {
-                                return full_shape(frame, Measured::Kind::series, 1, pilot);
-                              });
+  return make_full_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 60.0), analysis,
+                         Measured::Kind::series, 1);
 }
 
 }  // namespace

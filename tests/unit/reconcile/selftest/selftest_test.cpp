@@ -30,11 +30,8 @@ SelftestSettings small() {
 }
 
 const ReferenceStudy& reference_study() {
-  static const ReferenceStudy reference =
-      make_reference_study(test::shipped_scene("meeting_room.gltf"), short_study(), small().analysis,
-                           [](const StudyFrame& frame, std::span<const Series> pilot) {
-                             return full_shape(frame, Measured::Kind::series, 1, pilot);
-                           });
+  static const ReferenceStudy reference = make_full_study(test::shipped_scene("meeting_room.gltf"), short_study(),
+                                                          small().analysis, Measured::Kind::series, 1);
   return reference;
 }
 
@@ -45,7 +42,7 @@ const std::vector<InjectedDataset>& injected() {
 
 Rate rate(const SelftestResult& result, const std::string& what) {
   const std::vector<Rate> rates = rates_of(result);
-  const auto found = std::ranges::find(rates, what, [](const Rate& one) { return in_words(one.what); });
+  const auto found = std::ranges::find(rates, what, &Rate::what);
   REQUIRE(found != rates.end());
   REQUIRE(found->of > 0);
   return *found;
