@@ -21,13 +21,11 @@ constexpr float seat_radius_m = 0.25F;  // assumed (0.2-0.3): of what is warm
 /// (n_seats) 1 where a ray of the sensor hits the seat.
 std::vector<std::uint8_t> seats_seen(const StageContext& context, std::uint32_t sensor) {
   const RayBundle& rays = context.clipped_rays;
-  const auto first_ray = [&](std::uint32_t cluster) { return rays.zone_rays_begin[rays.cluster_zones_begin[cluster]]; };
   std::vector<std::uint8_t> seen;
   for (const SeatSpec& seat : context.scene.seats) {
     const PosedSphere warm{Vec3f(seat.world_from_seat.origin), seat_radius_m};
     std::uint8_t is_hit = 0;
-    for (auto i = first_ray(rays.sensor_clusters_begin[sensor]); i < first_ray(rays.sensor_clusters_begin[sensor + 1]);
-         ++i) {
+    for (auto i = rays.first_ray(sensor); i < rays.first_ray(sensor + 1); ++i) {
       if (entry_distance(rays.rays[i], warm, rays.range[i])) is_hit = 1;
     }
     seen.push_back(is_hit);
