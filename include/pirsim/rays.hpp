@@ -26,6 +26,13 @@ struct RayBundle {
   [[nodiscard]] std::size_t n_zones() const noexcept { return zone_rays_begin.size() - 1; }
   [[nodiscard]] std::size_t n_clusters() const noexcept { return cluster_zones_begin.size() - 1; }
   [[nodiscard]] std::size_t n_sensors() const noexcept { return sensor_clusters_begin.size() - 1; }
+  /// Of a sensor; those of n_sensors() are where the last sensor's end.
+  [[nodiscard]] std::uint32_t first_zone(std::size_t sensor) const noexcept {
+    return cluster_zones_begin[sensor_clusters_begin[sensor]];
+  }
+  [[nodiscard]] std::uint32_t first_ray(std::size_t sensor) const noexcept {
+    return zone_rays_begin[first_zone(sensor)];
+  }
 };
 
 // Which zones are active at a tick, one bit a zone: those with a ray that hits a person.
@@ -44,6 +51,10 @@ class ZoneSet {
     return ((words_[i / bits_per_word] >> (i % bits_per_word)) & 1U) != 0;
   }
   void insert(std::size_t i) noexcept { words_[i / bits_per_word] |= Word{1} << (i % bits_per_word); }
+  /// All from `first` to `end` - 1.
+  void insert(std::size_t first, std::size_t end) noexcept {
+    for (; first < end; ++first) insert(first);
+  }
   void erase(std::size_t i) noexcept { words_[i / bits_per_word] &= ~(Word{1} << (i % bits_per_word)); }
   void clear() noexcept { std::ranges::fill(words_, Word{0}); }
   /// Adds the members of a set of the same size, given as words.

@@ -152,9 +152,9 @@ using Action = std::variant<action::Wait, action::Appear, action::Enter, action:
 
 struct ScriptedAction {
   Action what;
-  std::optional<double> at_s;  ///< starts then: interrupts what goes on, or waits if that is already done
-  std::string phase;           ///< label of rows while this action runs; empty: what the body is doing
-  Where where;                 ///< for messages
+  std::optional<double> at_s{};  ///< starts then: interrupts what goes on, or waits if that is already done
+  std::string phase{};           ///< label of rows while this action runs; empty: what the body is doing
+  Where where{};                 ///< for messages
 };
 
 /// Meshes by the name of the body part (model/schema/words.hpp) that they stand for, in that part's frame.

@@ -92,69 +92,6 @@ void sweep(std::vector<double>& squared) {
   squared = std::move(result);
 }
 
-}  // namespace
-
-std::vector<double> distances_m(const CellGrid& grid, const Cells& taken) {
-  std::vector<double> squared(grid.size());
-  for (std::size_t i = 0; i < squared.size(); ++i)
-    squared[i] = taken[i] != 0 ? 0.0 : std::numeric_limits<double>::infinity();
-  const auto along = [&](std::size_t first, std::size_t step, std::size_t n) {
-    std::vector<double> line(n);
-    for (std::size_t i = 0; i < n; ++i) line[i] = squared[first + i * step];
-    sweep(line);
-    for (std::size_t i = 0; i < n; ++i) squared[first + i * step] = line[i];
-  };
-  for (std::size_t row = 0; row < grid.n_rows; ++row) along(row * grid.n_columns, 1, grid.n_columns);
-  for (std::size_t column = 0; column < grid.n_columns; ++column) along(column, grid.n_columns, grid.n_rows);
-  for (double& distance : squared) distance = grid.side_m * std::sqrt(distance);
-  return squared;
-}
-
-Cells grown(const CellGrid& grid, const Cells& taken, double by_m) {
-  const std::vector<double> distance_m = distances_m(grid, taken);
-  Cells result(taken.size());
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = distance_m[i] <= by_m ? 1 : 0;
-  return result;
-}
-
-Cells shrunk(const CellGrid& grid, Cells taken, double by_m) {
-  for (auto& cell : taken) cell = cell == 0 ? 1 : 0;
-  Cells result = grown(grid, taken, by_m);
-  for (auto& cell : result) cell = cell == 0 ? 1 : 0;
-  return result;
-}
-
-std::vector<CellHole> holes_of(const CellGrid& grid, const Cells& taken) {
-  std::vector<CellHole> holes;
-  Cells seen = taken;
-  for (std::size_t first = 0; first < seen.size(); ++first) {
-    if (seen[first] != 0) continue;
-    CellHole& hole = holes.emplace_back();
-    hole.cells.push_back(first);
-    seen[first] = 1;
-    for (std::size_t i = 0; i < hole.cells.size(); ++i) {
-      int n = 0;
-      grid.each_neighbour(hole.cells[i], [&](std::size_t neighbour) {
-        ++n;
-        if (seen[neighbour] != 0) return;
-        seen[neighbour] = 1;
-        hole.cells.push_back(neighbour);
-      });
-      if (n < 4) hole.is_at_edge = true;
-    }
-  }
-  return holes;
-}
-
-void fill_holes(const CellGrid& grid, Cells& taken, double most_m2) {
-  for (const CellHole& hole : holes_of(grid, taken)) {
-    if (hole.is_at_edge || static_cast<double>(hole.cells.size()) * grid.side_m * grid.side_m > most_m2) continue;
-    for (const std::size_t cell : hole.cells) taken[cell] = 1;
-  }
-}
-
-namespace {
-
 /// Squares join the region of their widest neighbour; where two regions meet they become one, or stay apart for good.
 class Flood {
  public:
@@ -246,14 +183,6 @@ class Flood {
   std::vector<double> peak_m_;
   std::vector<RegionGap> meetings_;
 };
-
-}  // namespace
-
-Regions regions_of(const CellGrid& grid, const std::vector<double>& distance_m, const RegionLimits& limits) {
-  return Flood(grid, distance_m, limits).run();
-}
-
-namespace {
 
 /// Leaves out corners of a closed line that are near the line between those that stay (Douglas and Peucker).
 class Simplifier {
@@ -355,6 +284,69 @@ class Tracer {
 };
 
 }  // namespace
+
+std::vector<double> distances_m(const CellGrid& grid, const Cells& taken) {
+  std::vector<double> squared(grid.size());
+  for (std::size_t i = 0; i < squared.size(); ++i)
+    squared[i] = taken[i] != 0 ? 0.0 : std::numeric_limits<double>::infinity();
+  const auto along = [&](std::size_t first, std::size_t step, std::size_t n) {
+    std::vector<double> line(n);
+    for (std::size_t i = 0; i < n; ++i) line[i] = squared[first + i * step];
+    sweep(line);
+    for (std::size_t i = 0; i < n; ++i) squared[first + i * step] = line[i];
+  };
+  for (std::size_t row = 0; row < grid.n_rows; ++row) along(row * grid.n_columns, 1, grid.n_columns);
+  for (std::size_t column = 0; column < grid.n_columns; ++column) along(column, grid.n_columns, grid.n_rows);
+  for (double& distance : squared) distance = grid.side_m * std::sqrt(distance);
+  return squared;
+}
+
+Cells grown(const CellGrid& grid, const Cells& taken, double by_m) {
+  const std::vector<double> distance_m = distances_m(grid, taken);
+  Cells result(taken.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = distance_m[i] <= by_m ? 1 : 0;
+  return result;
+}
+
+Cells shrunk(const CellGrid& grid, Cells taken, double by_m) {
+  for (auto& cell : taken) cell = cell == 0 ? 1 : 0;
+  Cells result = grown(grid, taken, by_m);
+  for (auto& cell : result) cell = cell == 0 ? 1 : 0;
+  return result;
+}
+
+std::vector<CellHole> holes_of(const CellGrid& grid, const Cells& taken) {
+  std::vector<CellHole> holes;
+  Cells seen = taken;
+  for (std::size_t first = 0; first < seen.size(); ++first) {
+    if (seen[first] != 0) continue;
+    CellHole& hole = holes.emplace_back();
+    hole.cells.push_back(first);
+    seen[first] = 1;
+    for (std::size_t i = 0; i < hole.cells.size(); ++i) {
+      int n = 0;
+      grid.each_neighbour(hole.cells[i], [&](std::size_t neighbour) {
+        ++n;
+        if (seen[neighbour] != 0) return;
+        seen[neighbour] = 1;
+        hole.cells.push_back(neighbour);
+      });
+      if (n < 4) hole.is_at_edge = true;
+    }
+  }
+  return holes;
+}
+
+void fill_holes(const CellGrid& grid, Cells& taken, double most_m2) {
+  for (const CellHole& hole : holes_of(grid, taken)) {
+    if (hole.is_at_edge || static_cast<double>(hole.cells.size()) * grid.side_m * grid.side_m > most_m2) continue;
+    for (const std::size_t cell : hole.cells) taken[cell] = 1;
+  }
+}
+
+Regions regions_of(const CellGrid& grid, const std::vector<double>& distance_m, const RegionLimits& limits) {
+  return Flood(grid, distance_m, limits).run();
+}
 
 std::vector<std::vector<Vec2>> outlines_of(const CellGrid& grid, const Cells& taken, double tolerance_m) {
   std::vector<std::vector<Vec2>> outlines;
@@ -662,17 +654,6 @@ class Planner {
   bool is_bare_ = false;
 };
 
-}  // namespace
-
-FloorPlan floor_plan_at(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves, double height_m,
-                        double side_m) {
-  return Planner(maps_of(meshes, height_m, side_m), leaves, height_m).run();
-}
-
-// Level surfaces and walls of a model, on squares.
-
-namespace {
-
 // All assumed, for rooms that people live and work in; tried on the models of docs/validation/foreign_models.md.
 constexpr double level_part = 0.98;    ///< least upward part of a level surface's normal (tried 0.9-0.99)
 constexpr double same_floor_m = 0.08;  ///< thresholds and carpets (0.05-0.1)
@@ -735,7 +716,53 @@ CellGrid grid_of(Meshes meshes, double height_m, double side_m) {
   return {lower, upper, margin_m, side_m, most_cells};
 }
 
+/// Cuts a slit from every hole that has other rooms in it to the outside: an outline has no holes.
+void open_holes(const FloorPlan& plan, int room, Cells& cells) {
+  constexpr std::size_t half_width = 1;
+  for (const CellHole& hole : holes_of(plan.grid, cells)) {
+    const auto is_other = [&](std::size_t cell) {
+      return plan.room_of_cell[cell] >= 0 && plan.room_of_cell[cell] != room;
+    };
+    if (hole.is_at_edge || std::ranges::none_of(hole.cells, is_other)) continue;
+    const std::size_t top = *std::ranges::min_element(hole.cells);
+    for (std::size_t at = top; at >= plan.grid.n_columns; at -= plan.grid.n_columns) {
+      for (std::size_t c = at - half_width; c <= at + half_width; ++c) cells[c] = 0;
+    }
+  }
+}
+
+/// The part of a plan round one room: the rest needs no time.
+FloorPlan part_round(const FloorPlan& plan, int room) {
+  constexpr std::size_t margin = 4;
+  const CellGrid& grid = plan.grid;
+  std::size_t left = grid.n_columns, right = 0, top = grid.n_rows, bottom = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (plan.room_of_cell[i] != room) continue;
+    left = std::min(left, i % grid.n_columns), right = std::max(right, i % grid.n_columns);
+    top = std::min(top, i / grid.n_columns), bottom = std::max(bottom, i / grid.n_columns);
+  }
+  left -= std::min(left, margin), top -= std::min(top, margin);
+  right = std::min(right + margin, grid.n_columns - 1), bottom = std::min(bottom + margin, grid.n_rows - 1);
+  FloorPlan part = plan;
+  part.grid.corner = grid.corner + grid.side_m * Vec2(static_cast<double>(left), static_cast<double>(top));
+  part.grid.n_columns = right + 1 - left, part.grid.n_rows = bottom + 1 - top;
+  part.room_of_cell.clear();
+  for (std::size_t row = top; row <= bottom; ++row) {
+    const auto first = plan.room_of_cell.begin() + static_cast<std::ptrdiff_t>(row * grid.n_columns);
+    part.room_of_cell.insert(part.room_of_cell.end(), first + static_cast<std::ptrdiff_t>(left),
+                             first + static_cast<std::ptrdiff_t>(right + 1));
+  }
+  return part;
+}
+
 }  // namespace
+
+FloorPlan floor_plan_at(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves, double height_m,
+                        double side_m) {
+  return Planner(maps_of(meshes, height_m, side_m), leaves, height_m).run();
+}
+
+// Level surfaces and walls of a model, on squares.
 
 FloorMaps maps_of(Meshes meshes, double height_m, double side_m) {
   FloorMaps maps{grid_of(meshes, height_m, side_m), {}, {}, {}, {}, {}, {}};
@@ -784,49 +811,6 @@ std::vector<double> level_heights_m(Meshes meshes) {
 }
 
 // Outlines of a floor plan.
-
-namespace {
-
-/// Cuts a slit from every hole that has other rooms in it to the outside: an outline has no holes.
-void open_holes(const FloorPlan& plan, int room, Cells& cells) {
-  constexpr std::size_t half_width = 1;
-  for (const CellHole& hole : holes_of(plan.grid, cells)) {
-    const auto is_other = [&](std::size_t cell) {
-      return plan.room_of_cell[cell] >= 0 && plan.room_of_cell[cell] != room;
-    };
-    if (hole.is_at_edge || std::ranges::none_of(hole.cells, is_other)) continue;
-    const std::size_t top = *std::ranges::min_element(hole.cells);
-    for (std::size_t at = top; at >= plan.grid.n_columns; at -= plan.grid.n_columns) {
-      for (std::size_t c = at - half_width; c <= at + half_width; ++c) cells[c] = 0;
-    }
-  }
-}
-
-/// The part of a plan round one room: the rest needs no time.
-FloorPlan part_round(const FloorPlan& plan, int room) {
-  constexpr std::size_t margin = 4;
-  const CellGrid& grid = plan.grid;
-  std::size_t left = grid.n_columns, right = 0, top = grid.n_rows, bottom = 0;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (plan.room_of_cell[i] != room) continue;
-    left = std::min(left, i % grid.n_columns), right = std::max(right, i % grid.n_columns);
-    top = std::min(top, i / grid.n_columns), bottom = std::max(bottom, i / grid.n_columns);
-  }
-  left -= std::min(left, margin), top -= std::min(top, margin);
-  right = std::min(right + margin, grid.n_columns - 1), bottom = std::min(bottom + margin, grid.n_rows - 1);
-  FloorPlan part = plan;
-  part.grid.corner = grid.corner + grid.side_m * Vec2(static_cast<double>(left), static_cast<double>(top));
-  part.grid.n_columns = right + 1 - left, part.grid.n_rows = bottom + 1 - top;
-  part.room_of_cell.clear();
-  for (std::size_t row = top; row <= bottom; ++row) {
-    const auto first = plan.room_of_cell.begin() + static_cast<std::ptrdiff_t>(row * grid.n_columns);
-    part.room_of_cell.insert(part.room_of_cell.end(), first + static_cast<std::ptrdiff_t>(left),
-                             first + static_cast<std::ptrdiff_t>(right + 1));
-  }
-  return part;
-}
-
-}  // namespace
 
 std::vector<std::vector<Vec2>> floor_outlines(const FloorPlan& plan) {
   constexpr double half_wall_m = 0.25;  // assumed: of the thickest inner walls (0.1-0.3)

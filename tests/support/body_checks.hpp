@@ -10,6 +10,7 @@
 #include "engine/body/motion.hpp"
 #include "engine/body/skeleton.hpp"
 #include "support/catch.hpp"
+#include "support/joints.hpp"
 
 namespace pirsim::body::test {
 

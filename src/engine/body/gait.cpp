@@ -69,6 +69,26 @@ Corner corner_between(const Leg& in, const Leg& out, double radius) {
   return {turn, radius, radius * std::tan(half)};
 }
 
+constexpr int samples_per_step = 8;
+// Within one step's way; assumed (90-120 degrees): beyond, the hips would pass their limits.
+constexpr double sharpest_bend = 100.0 * pi / 180.0;
+
+constexpr double rest_s = 0.5;  // assumed: who doesn't move for so long brings the feet together (0.2-1)
+
+FollowedPath::Leg leg_of(std::span<const double> times_s, std::span<const Vec2> points,
+                         std::span<const double> headings) {
+  FollowedPath::Leg leg;
+  leg.times_s.assign(times_s.begin(), times_s.end());
+  leg.headings.assign(headings.begin(), headings.end());
+  leg.route = Route(std::vector<Vec2>(points.begin(), points.end()), 0.0);
+  double walked_m = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0) walked_m += glm::distance(points[i - 1], points[i]);
+    leg.walked_m.push_back(walked_m);
+  }
+  return leg;
+}
+
 }  // namespace
 
 Route::Route(const std::vector<Vec2>& points, double corner_radius_m) {
@@ -128,12 +148,6 @@ double Route::curvature(double s) const noexcept {
   if (pieces_.empty()) return 0.0;
   return piece_at(clamped(s)).curvature;
 }
-
-namespace {
-constexpr int samples_per_step = 8;
-// Within one step's way; assumed (90-120 degrees): beyond, the hips would pass their limits.
-constexpr double sharpest_bend = 100.0 * pi / 180.0;
-}  // namespace
 
 double smoothstep(double x) noexcept {
   const double t = std::clamp(x, 0.0, 1.0);
@@ -313,26 +327,6 @@ Feet FootPlan::feet(const Track& track, double s) const noexcept {
   }
   return feet;
 }
-
-namespace {
-
-constexpr double rest_s = 0.5;  // assumed: who doesn't move for so long brings the feet together (0.2-1)
-
-FollowedPath::Leg leg_of(std::span<const double> times_s, std::span<const Vec2> points,
-                         std::span<const double> headings) {
-  FollowedPath::Leg leg;
-  leg.times_s.assign(times_s.begin(), times_s.end());
-  leg.headings.assign(headings.begin(), headings.end());
-  leg.route = Route(std::vector<Vec2>(points.begin(), points.end()), 0.0);
-  double walked_m = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0) walked_m += glm::distance(points[i - 1], points[i]);
-    leg.walked_m.push_back(walked_m);
-  }
-  return leg;
-}
-
-}  // namespace
 
 double FollowedPath::Leg::walked_at(double time_s) const noexcept {
   const auto later = std::ranges::upper_bound(times_s, time_s);

@@ -114,6 +114,155 @@ double between_edges(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
   return std::min({body::distance(a, c, d), body::distance(b, c, d), body::distance(c, a, b), body::distance(d, a, b)});
 }
 
+double octile(int columns, int a, int b) noexcept {
+  const int across = std::abs(a % columns - b % columns);
+  const int along = std::abs(a / columns - b / columns);
+  return std::max(across, along) + (std::numbers::sqrt2 - 1.0) * std::min(across, along);
+}
+
+std::vector<int> traced_back(const std::vector<int>& parent, int goal) {
+  std::vector<int> way;
+  for (int cell = goal; cell >= 0; cell = parent[static_cast<std::size_t>(cell)]) way.push_back(cell);
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+constexpr double coarse_m = 0.05;  ///< distance of the places at which legs are cut short: half a cell
+constexpr double fine_m = 0.005;
+constexpr int max_passes = 10;      ///< each pass shortens; in rooms two or three suffice
+constexpr double gain_m = 1e-4;     ///< a pass that gains less is the last
+constexpr int halvings = 12;        ///< of the length by which a corner is cut off: to a millimetre and below
+constexpr double corner_rad = 0.2;  ///< a smaller change of direction isn't cut off. assumed (0.1-0.5)
+
+double length_of(const std::vector<Vec2>& way) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) length += glm::distance(way[i - 1], way[i]);
+  return length;
+}
+
+std::vector<Vec2> subdivided(const std::vector<Vec2>& way, double spacing_m) {
+  std::vector<Vec2> points{way.front()};
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const int parts = std::max(1, static_cast<int>(std::ceil(glm::distance(way[i - 1], way[i]) / spacing_m)));
+    for (int part = 1; part < parts; ++part) {
+      points.push_back(way[i - 1] + (way[i] - way[i - 1]) * (static_cast<double>(part) / parts));
+    }
+    points.push_back(way[i]);
+  }
+  return points;
+}
+
+/// From each point straight to a far one, found by steps that double while they succeed and halve where they don't.
+std::vector<Vec2> shortcut(const std::vector<Vec2>& points, const StraightWay& straight) {
+  std::vector<Vec2> kept{points.front()};
+  for (std::size_t i = 0; i + 1 < points.size();) {
+    std::size_t next = i + 1;
+    for (std::size_t step = 1; step > 0;) {
+      const bool reached = next + step < points.size() && straight(points[i], points[next + step]);
+      if (reached) next += step;
+      step = reached ? 2 * step : step / 2;
+    }
+    kept.push_back(points[next]);
+    i = next;
+  }
+  return kept;
+}
+
+/// How much of the corner between a and b can be cut off, measured along either leg.
+double cut_m(const Vec2& a, const Vec2& corner, const Vec2& b, const StraightWay& straight) {
+  const double turn = std::remainder(heading_of(b - corner) - heading_of(corner - a), 2.0 * std::numbers::pi);
+  if (std::abs(turn) < corner_rad) return 0.0;
+  const Vec2 to_a = glm::normalize(a - corner);
+  const Vec2 to_b = glm::normalize(b - corner);
+  double cut = 0.0;
+  // Half of the shorter leg at most: the other half belongs to the corner at its other end.
+  double step = 0.25 * std::min(glm::distance(a, corner), glm::distance(corner, b));
+  for (int i = 0; i < halvings; ++i, step *= 0.5) {
+    if (straight(corner + to_a * (cut + step), corner + to_b * (cut + step))) cut += step;
+  }
+  return cut;
+}
+
+/// Two corners of half the angle instead of each one.
+std::vector<Vec2> corners_cut_off(const std::vector<Vec2>& way, const StraightWay& straight) {
+  std::vector<Vec2> result{way.front()};
+  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+    const double cut = cut_m(way[i - 1], way[i], way[i + 1], straight);
+    if (cut > 0.0) {
+      result.push_back(way[i] + glm::normalize(way[i - 1] - way[i]) * cut);
+      result.push_back(way[i] + glm::normalize(way[i + 1] - way[i]) * cut);
+    } else {
+      result.push_back(way[i]);
+    }
+  }
+  result.push_back(way.back());
+  return result;
+}
+
+constexpr double cell_m = FloorCells::side_m;
+constexpr double max_cells = 2.5e7;  ///< assumed: an airport's hall of 1.2 km x 200 m just fits, in some 500 MB
+/// How far the strip of an entrance reaches into the room. assumed: more than the depth of a door's reveal (0.1-0.5).
+constexpr double strip_inside_m = 0.5;
+/// How far the strip goes on behind the place where people wait. assumed: a body's length of room (0.3-1 m).
+constexpr double strip_beyond_m = 0.5;
+
+/// The way in and out through one entrance, a rectangle in the entrance's frame.
+struct Strip {
+  Frame entrance_from_world;
+  double half_width_m;
+  double outside_m;
+
+  [[nodiscard]] bool contains(const Vec2& point, double height_m) const {
+    const Vec3 p = entrance_from_world * Vec3(point.x, height_m, point.y);
+    return std::abs(p.x) <= half_width_m && p.z >= -strip_inside_m && p.z <= outside_m + strip_beyond_m;
+  }
+};
+
+bool finite(const Vec2& p) noexcept { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+void lay(FloorCells& grid, const FloorArea& floor, std::span<const EntranceSpec> entrances) {
+  std::vector<Strip> strips;
+  Vec2 least(std::numeric_limits<double>::infinity());
+  Vec2 most = -least;
+  const auto reach_to = [&](const Vec2& p) { least = glm::min(least, p), most = glm::max(most, p); };
+  if (!floor.empty()) reach_to(floor.lower()), reach_to(floor.upper());
+  for (const EntranceSpec& entrance : entrances) {
+    strips.push_back({inverse(entrance.world_from_entrance), 0.5 * entrance.width_m, entrance.outside_m});
+    for (const double x : {-0.5 * entrance.width_m, 0.5 * entrance.width_m}) {
+      for (const double z : {-strip_inside_m, entrance.outside_m + strip_beyond_m}) {
+        reach_to(floor_point(entrance.world_from_entrance * Vec3(x, 0.0, z)));
+      }
+    }
+  }
+  if (!finite(least) || !finite(most)) return;
+  // The grid is centred on what it covers, so that a mirrored room has a mirrored grid.
+  const Vec2 cells = glm::max(glm::ceil((most - least) / cell_m - rounding_m), Vec2(1.0));
+  if (cells.x * cells.y > max_cells) {
+    const auto whole = [](double metres) { return std::to_string(std::llround(metres)); };
+    throw Error(ErrorCode::infeasible, "the floor and its entrances span " + whole(most.x - least.x) + " m x " +
+                                           whole(most.y - least.y) +
+                                           " m: too large to find ways on (glTF's unit is the metre)");
+  }
+  grid.lower = 0.5 * (least + most) - 0.5 * cell_m * cells;
+  grid.columns = static_cast<int>(cells.x);
+  grid.rows = static_cast<int>(cells.y);
+  grid.on_floor.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const Vec2 p = grid.centre(column, row);
+      const bool on_strip = std::any_of(strips.begin(), strips.end(),
+                                        [&](const Strip& strip) { return strip.contains(p, floor.height_m()); });
+      grid.on_floor.push_back(on_strip || floor.contains(p) ? 1 : 0);
+    }
+  }
+}
+
+constexpr double lead_m = 0.5;  ///< how far a start or goal may be from a walkable cell
+
+double disc_distance(const Vec2& a, const Vec2& b, const Disc& disc) noexcept {
+  return distance(disc.centre, a, b) - disc.radius_m;
+}
+
 }  // namespace
 
 std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m) {
@@ -223,23 +372,6 @@ bool Obstacles::clear(const Vec2& a, const Vec2& b, double keep_m) const noexcep
   });
 }
 
-namespace {
-
-double octile(int columns, int a, int b) noexcept {
-  const int across = std::abs(a % columns - b % columns);
-  const int along = std::abs(a / columns - b / columns);
-  return std::max(across, along) + (std::numbers::sqrt2 - 1.0) * std::min(across, along);
-}
-
-std::vector<int> traced_back(const std::vector<int>& parent, int goal) {
-  std::vector<int> way;
-  for (int cell = goal; cell >= 0; cell = parent[static_cast<std::size_t>(cell)]) way.push_back(cell);
-  std::reverse(way.begin(), way.end());
-  return way;
-}
-
-}  // namespace
-
 std::vector<int> shortest_way(const StepGrid& grid, int start, int goal) {
   using Entry = std::pair<double, int>;  // estimate of the whole way, cell: orders ties by the cell's index
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> frontier;
@@ -289,82 +421,6 @@ std::vector<int> connected_parts(const StepGrid& grid) {
   return label;
 }
 
-namespace {
-
-constexpr double coarse_m = 0.05;  ///< distance of the places at which legs are cut short: half a cell
-constexpr double fine_m = 0.005;
-constexpr int max_passes = 10;      ///< each pass shortens; in rooms two or three suffice
-constexpr double gain_m = 1e-4;     ///< a pass that gains less is the last
-constexpr int halvings = 12;        ///< of the length by which a corner is cut off: to a millimetre and below
-constexpr double corner_rad = 0.2;  ///< a smaller change of direction isn't cut off. assumed (0.1-0.5)
-
-double length_of(const std::vector<Vec2>& way) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) length += glm::distance(way[i - 1], way[i]);
-  return length;
-}
-
-std::vector<Vec2> subdivided(const std::vector<Vec2>& way, double spacing_m) {
-  std::vector<Vec2> points{way.front()};
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const int parts = std::max(1, static_cast<int>(std::ceil(glm::distance(way[i - 1], way[i]) / spacing_m)));
-    for (int part = 1; part < parts; ++part) {
-      points.push_back(way[i - 1] + (way[i] - way[i - 1]) * (static_cast<double>(part) / parts));
-    }
-    points.push_back(way[i]);
-  }
-  return points;
-}
-
-/// From each point straight to a far one, found by steps that double while they succeed and halve where they don't.
-std::vector<Vec2> shortcut(const std::vector<Vec2>& points, const StraightWay& straight) {
-  std::vector<Vec2> kept{points.front()};
-  for (std::size_t i = 0; i + 1 < points.size();) {
-    std::size_t next = i + 1;
-    for (std::size_t step = 1; step > 0;) {
-      const bool reached = next + step < points.size() && straight(points[i], points[next + step]);
-      if (reached) next += step;
-      step = reached ? 2 * step : step / 2;
-    }
-    kept.push_back(points[next]);
-    i = next;
-  }
-  return kept;
-}
-
-/// How much of the corner between a and b can be cut off, measured along either leg.
-double cut_m(const Vec2& a, const Vec2& corner, const Vec2& b, const StraightWay& straight) {
-  const double turn = std::remainder(heading_of(b - corner) - heading_of(corner - a), 2.0 * std::numbers::pi);
-  if (std::abs(turn) < corner_rad) return 0.0;
-  const Vec2 to_a = glm::normalize(a - corner);
-  const Vec2 to_b = glm::normalize(b - corner);
-  double cut = 0.0;
-  // Half of the shorter leg at most: the other half belongs to the corner at its other end.
-  double step = 0.25 * std::min(glm::distance(a, corner), glm::distance(corner, b));
-  for (int i = 0; i < halvings; ++i, step *= 0.5) {
-    if (straight(corner + to_a * (cut + step), corner + to_b * (cut + step))) cut += step;
-  }
-  return cut;
-}
-
-/// Two corners of half the angle instead of each one.
-std::vector<Vec2> corners_cut_off(const std::vector<Vec2>& way, const StraightWay& straight) {
-  std::vector<Vec2> result{way.front()};
-  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
-    const double cut = cut_m(way[i - 1], way[i], way[i + 1], straight);
-    if (cut > 0.0) {
-      result.push_back(way[i] + glm::normalize(way[i - 1] - way[i]) * cut);
-      result.push_back(way[i] + glm::normalize(way[i + 1] - way[i]) * cut);
-    } else {
-      result.push_back(way[i]);
-    }
-  }
-  result.push_back(way.back());
-  return result;
-}
-
-}  // namespace
-
 std::vector<Vec2> pulled_tight(std::vector<Vec2> way, const StraightWay& straight) {
   if (way.size() < 3) return way;
   // Coarse first, because the way over the cells has many corners, then fine.
@@ -380,68 +436,6 @@ std::vector<Vec2> pulled_tight(std::vector<Vec2> way, const StraightWay& straigh
   }
   return corners_cut_off(way, straight);
 }
-
-namespace {
-
-constexpr double cell_m = FloorCells::side_m;
-constexpr double max_cells = 2.5e7;  ///< assumed: an airport's hall of 1.2 km x 200 m just fits, in some 500 MB
-/// How far the strip of an entrance reaches into the room. assumed: more than the depth of a door's reveal (0.1-0.5).
-constexpr double strip_inside_m = 0.5;
-/// How far the strip goes on behind the place where people wait. assumed: a body's length of room (0.3-1 m).
-constexpr double strip_beyond_m = 0.5;
-
-/// The way in and out through one entrance, a rectangle in the entrance's frame.
-struct Strip {
-  Frame entrance_from_world;
-  double half_width_m;
-  double outside_m;
-
-  [[nodiscard]] bool contains(const Vec2& point, double height_m) const {
-    const Vec3 p = entrance_from_world * Vec3(point.x, height_m, point.y);
-    return std::abs(p.x) <= half_width_m && p.z >= -strip_inside_m && p.z <= outside_m + strip_beyond_m;
-  }
-};
-
-bool finite(const Vec2& p) noexcept { return std::isfinite(p.x) && std::isfinite(p.y); }
-
-void lay(FloorCells& grid, const FloorArea& floor, std::span<const EntranceSpec> entrances) {
-  std::vector<Strip> strips;
-  Vec2 least(std::numeric_limits<double>::infinity());
-  Vec2 most = -least;
-  const auto reach_to = [&](const Vec2& p) { least = glm::min(least, p), most = glm::max(most, p); };
-  if (!floor.empty()) reach_to(floor.lower()), reach_to(floor.upper());
-  for (const EntranceSpec& entrance : entrances) {
-    strips.push_back({inverse(entrance.world_from_entrance), 0.5 * entrance.width_m, entrance.outside_m});
-    for (const double x : {-0.5 * entrance.width_m, 0.5 * entrance.width_m}) {
-      for (const double z : {-strip_inside_m, entrance.outside_m + strip_beyond_m}) {
-        reach_to(floor_point(entrance.world_from_entrance * Vec3(x, 0.0, z)));
-      }
-    }
-  }
-  if (!finite(least) || !finite(most)) return;
-  // The grid is centred on what it covers, so that a mirrored room has a mirrored grid.
-  const Vec2 cells = glm::max(glm::ceil((most - least) / cell_m - rounding_m), Vec2(1.0));
-  if (cells.x * cells.y > max_cells) {
-    const auto whole = [](double metres) { return std::to_string(std::llround(metres)); };
-    throw Error(ErrorCode::infeasible, "the floor and its entrances span " + whole(most.x - least.x) + " m x " +
-                                           whole(most.y - least.y) +
-                                           " m: too large to find ways on (glTF's unit is the metre)");
-  }
-  grid.lower = 0.5 * (least + most) - 0.5 * cell_m * cells;
-  grid.columns = static_cast<int>(cells.x);
-  grid.rows = static_cast<int>(cells.y);
-  grid.on_floor.reserve(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows));
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const Vec2 p = grid.centre(column, row);
-      const bool on_strip = std::any_of(strips.begin(), strips.end(),
-                                        [&](const Strip& strip) { return strip.contains(p, floor.height_m()); });
-      grid.on_floor.push_back(on_strip || floor.contains(p) ? 1 : 0);
-    }
-  }
-}
-
-}  // namespace
 
 int FloorCells::column_of(double x) const noexcept {
   return static_cast<int>(std::floor(std::clamp((x - lower.x) / side_m, -1.0, static_cast<double>(columns))));
@@ -568,16 +562,6 @@ StepGrid Ground::steps_between(std::span<const std::uint8_t> open, double cleara
   }
   return grid;
 }
-
-namespace {
-
-constexpr double lead_m = 0.5;  ///< how far a start or goal may be from a walkable cell
-
-double disc_distance(const Vec2& a, const Vec2& b, const Disc& disc) noexcept {
-  return distance(disc.centre, a, b) - disc.radius_m;
-}
-
-}  // namespace
 
 struct WalkableFloor::Impl {
   double clearance_m = 0.0;

@@ -9,7 +9,7 @@
 #include "model/schema/words.hpp"
 #include "pirsim/error.hpp"
 
-// The state machine: commands and the tick. How the state becomes a posture is in motion_posture.cpp.
+// The state machine: commands and the tick.
 
 namespace pirsim::body {
 
@@ -43,6 +43,93 @@ constexpr double foremost_tilt = radians(50);
 }
 
 bool rests_at(const MinJerk& motion, double target) { return motion.settled() && motion.target() == target; }
+
+/// By bytes, so that 0 and -0 count as different and no number as itself.
+template <typename Value>
+bool differ(const Value& a, const Value& b) noexcept {
+  static_assert(sizeof(Value) % sizeof(double) == 0);
+  return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof a) != 0;
+}
+
+Limbs changes(const Outline& a, const Outline& b) noexcept {
+  Limbs changed;
+  if (a.lying.progress > 0.0 || b.lying.progress > 0.0) {  // what hangs on the surface hangs together
+    Outline same_breath = a;
+    same_breath.chest_m = b.chest_m;
+    const bool any = differ(same_breath, b);
+    return {any, any, differ(a.chest_m, b.chest_m), any, any, {any, any}};
+  }
+  changed.hips = differ(a.pelvis, b.pelvis) || differ(a.hip_height_m, b.hip_height_m);
+  changed.spine = differ(a.spine_tilt, b.spine_tilt) || differ(a.spine_lean, b.spine_lean);
+  changed.chest = differ(a.chest_m, b.chest_m);
+  changed.head = differ(a.head_turn, b.head_turn);
+  const bool floor = differ(a.floor_height_m, b.floor_height_m);
+  for (const std::size_t side : {0U, 1U}) changed.ankles[side] = floor || differ(a.feet[side], b.feet[side]);
+  changed.arms = changed.hips || changed.spine || changed.ankles[0] || changed.ankles[1] || differ(a.fall, b.fall) ||
+                 differ(a.reach, b.reach) || differ(a.thigh_angle, b.thigh_angle) ||
+                 differ(a.table_height_m, b.table_height_m) || differ(a.hand_offset_m, b.hand_offset_m) ||
+                 differ(a.hand_ahead_m, b.hand_ahead_m) || differ(a.hand_up_m, b.hand_up_m) ||
+                 differ(a.hand_to_head, b.hand_to_head);
+  return changed;
+}
+
+constexpr std::uint32_t bit(Part left, std::size_t side = 0) {
+  return 1U << (static_cast<std::uint32_t>(left) + static_cast<std::uint32_t>(side));
+}
+
+/// See update(Posture&, ...).
+std::uint32_t parts_of(const Limbs& changed) noexcept {
+  const bool trunk = changed.hips || changed.spine;
+  std::uint32_t parts = 0;
+  if (changed.hips) parts |= bit(Part::pelvis);
+  if (trunk || changed.chest) parts |= bit(Part::torso);
+  if (trunk || changed.head) parts |= bit(Part::head);
+  for (const std::size_t side : {0U, 1U}) {
+    if (trunk || changed.arms) parts |= bit(Part::left_upper_arm, side) | bit(Part::left_forearm, side);
+    if (changed.hips || changed.ankles[side]) parts |= bit(Part::left_thigh, side) | bit(Part::left_shank, side);
+    if (changed.ankles[side]) parts |= bit(Part::left_foot, side);
+  }
+  return parts;
+}
+
+constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
+/// Within the spine's limits; tilts alone are within them already.
+double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }
+
+constexpr double lean_while_falling = 25 * pi / 180;  // assumed (15-40 degrees), at half way
+
+double height_over(double leg_m, double horizontal_m) {
+  return std::sqrt(std::max(0.0, leg_m * leg_m - horizontal_m * horizontal_m));
+}
+
+std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline, const Pose& pose) noexcept {
+  std::array<ArmPose, 2> arms;
+  if (outline.fall < 1.0) {
+    const Frame hips_from_world = inverse(pose.world_from_hips);
+    // Feet before a sitter don't make the arms swing: only their difference counts.
+    arms = hanging_arms(humanoid.measures(), {-(hips_from_world * pose.world_from_ankle[0].origin).z,
+                                              -(hips_from_world * pose.world_from_ankle[1].origin).z});
+  }
+  if (outline.fall > 0.0 && outline.reach < 1.0) {
+    const auto resting = arms_on_thighs(humanoid, torso_rotation(pose), outline.thigh_angle);
+    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(outline.fall));
+  }
+  if (outline.reach > 0.0) {
+    const double table_above_hips_m = outline.table_height_m - pose.world_from_hips.origin.y;
+    const std::array<HandPlace, 2> hands{
+        HandPlace{outline.hand_offset_m + outline.hand_ahead_m[0], outline.hand_up_m[0]},
+        HandPlace{-outline.hand_offset_m + outline.hand_ahead_m[1], outline.hand_up_m[1]}};
+    const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
+    for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
+  }
+  return arms;
+}
+
+void raise_hands(std::array<ArmPose, 2>& arms, const Humanoid& humanoid, const Outline& outline) noexcept {
+  if (outline.hand_to_head == std::array<double, 2>{}) return;
+  const auto raised = arms_at_head(humanoid);
+  for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
+}
 
 }  // namespace
 
@@ -332,58 +419,6 @@ bool Motion::settled() const noexcept {
          hand_offset_left_over_m_.settled();
 }
 
-namespace {
-
-/// By bytes, so that 0 and -0 count as different and no number as itself.
-template <typename Value>
-bool differ(const Value& a, const Value& b) noexcept {
-  static_assert(sizeof(Value) % sizeof(double) == 0);
-  return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof a) != 0;
-}
-
-Limbs changes(const Outline& a, const Outline& b) noexcept {
-  Limbs changed;
-  if (a.lying.progress > 0.0 || b.lying.progress > 0.0) {  // what hangs on the surface hangs together
-    Outline same_breath = a;
-    same_breath.chest_m = b.chest_m;
-    const bool any = differ(same_breath, b);
-    return {any, any, differ(a.chest_m, b.chest_m), any, any, {any, any}};
-  }
-  changed.hips = differ(a.pelvis, b.pelvis) || differ(a.hip_height_m, b.hip_height_m);
-  changed.spine = differ(a.spine_tilt, b.spine_tilt) || differ(a.spine_lean, b.spine_lean);
-  changed.chest = differ(a.chest_m, b.chest_m);
-  changed.head = differ(a.head_turn, b.head_turn);
-  const bool floor = differ(a.floor_height_m, b.floor_height_m);
-  for (const std::size_t side : {0U, 1U}) changed.ankles[side] = floor || differ(a.feet[side], b.feet[side]);
-  changed.arms = changed.hips || changed.spine || changed.ankles[0] || changed.ankles[1] || differ(a.fall, b.fall) ||
-                 differ(a.reach, b.reach) || differ(a.thigh_angle, b.thigh_angle) ||
-                 differ(a.table_height_m, b.table_height_m) || differ(a.hand_offset_m, b.hand_offset_m) ||
-                 differ(a.hand_ahead_m, b.hand_ahead_m) || differ(a.hand_up_m, b.hand_up_m) ||
-                 differ(a.hand_to_head, b.hand_to_head);
-  return changed;
-}
-
-constexpr std::uint32_t bit(Part left, std::size_t side = 0) {
-  return 1U << (static_cast<std::uint32_t>(left) + static_cast<std::uint32_t>(side));
-}
-
-/// See update(Posture&, ...).
-std::uint32_t parts_of(const Limbs& changed) noexcept {
-  const bool trunk = changed.hips || changed.spine;
-  std::uint32_t parts = 0;
-  if (changed.hips) parts |= bit(Part::pelvis);
-  if (trunk || changed.chest) parts |= bit(Part::torso);
-  if (trunk || changed.head) parts |= bit(Part::head);
-  for (const std::size_t side : {0U, 1U}) {
-    if (trunk || changed.arms) parts |= bit(Part::left_upper_arm, side) | bit(Part::left_forearm, side);
-    if (changed.hips || changed.ankles[side]) parts |= bit(Part::left_thigh, side) | bit(Part::left_shank, side);
-    if (changed.ankles[side]) parts |= bit(Part::left_foot, side);
-  }
-  return parts;
-}
-
-}  // namespace
-
 const Posture& Poser::posture(const Outline& outline) noexcept {
   const Limbs changed = begun_ ? changes(outline_, outline) : Limbs{};
   begun_ = true;
@@ -395,20 +430,6 @@ const Posture& Poser::posture(const Outline& outline) noexcept {
 }
 
 // How the state of motion becomes a posture.
-
-namespace {
-
-constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
-/// Within the spine's limits; tilts alone are within them already.
-double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }
-
-constexpr double lean_while_falling = 25 * pi / 180;  // assumed (15-40 degrees), at half way
-
-double height_over(double leg_m, double horizontal_m) {
-  return std::sqrt(std::max(0.0, leg_m * leg_m - horizontal_m * horizontal_m));
-}
-
-}  // namespace
 
 Placement Motion::pelvis() const noexcept {
   if (on_track()) return track_.at(distance_);
@@ -518,39 +539,6 @@ Outline Motion::outline() const noexcept {
   }
   return outline;
 }
-
-namespace {
-
-std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline, const Pose& pose) noexcept {
-  std::array<ArmPose, 2> arms;
-  if (outline.fall < 1.0) {
-    const Frame hips_from_world = inverse(pose.world_from_hips);
-    // Feet before a sitter don't make the arms swing: only their difference counts.
-    arms = hanging_arms(humanoid.measures(), {-(hips_from_world * pose.world_from_ankle[0].origin).z,
-                                              -(hips_from_world * pose.world_from_ankle[1].origin).z});
-  }
-  if (outline.fall > 0.0 && outline.reach < 1.0) {
-    const auto resting = arms_on_thighs(humanoid, torso_rotation(pose), outline.thigh_angle);
-    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(outline.fall));
-  }
-  if (outline.reach > 0.0) {
-    const double table_above_hips_m = outline.table_height_m - pose.world_from_hips.origin.y;
-    const std::array<HandPlace, 2> hands{
-        HandPlace{outline.hand_offset_m + outline.hand_ahead_m[0], outline.hand_up_m[0]},
-        HandPlace{-outline.hand_offset_m + outline.hand_ahead_m[1], outline.hand_up_m[1]}};
-    const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
-    for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
-  }
-  return arms;
-}
-
-void raise_hands(std::array<ArmPose, 2>& arms, const Humanoid& humanoid, const Outline& outline) noexcept {
-  if (outline.hand_to_head == std::array<double, 2>{}) return;
-  const auto raised = arms_at_head(humanoid);
-  for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
-}
-
-}  // namespace
 
 void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const Limbs& changed) noexcept {
   if (changed.hips) {

@@ -19,7 +19,7 @@ constexpr double skin_at_0_c = 30.2, skin_per_k = 0.125;
 constexpr double clo = 0.155;        // m^2 K/W
 constexpr double to_air = 8.0;       // W/(m^2 K) by convection and radiation, assumed (6-10)
 constexpr double hair_clo = 1.0;     // 0.6 to 1 [Nomoto2020]; wigs on a manikin up to 2 [Lasisi2023]
-constexpr double hand_share = 0.32;  // of the forearm's surface: a loosely closed hand's of its length (humanoid.cpp)
+constexpr double hand_share = 0.32;  // of the forearm's surface: a loosely closed hand's of its length
 
 /// Insulation of what covers a part over that of the whole outfit: medians of 21 outfits with trousers, 0.5 to 1 clo,
 /// on a manikin [LeeZhangArens2013, Nomoto2020]. Of a hat: assumed.
@@ -32,44 +32,12 @@ double outside_of(double insulation_clo, double skin_c, double ambient_c) {
 
 double mixed(double a, double b, double share_of_b) { return a + share_of_b * (b - a); }
 
-}  // namespace
-
-std::string_view name(Part part) noexcept { return body_part_names[at(part)]; }
-
-std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c) {
-  const double skin_c = warmth.skin_c.value_or(skin_at_0_c + skin_per_k * ambient_c + warmth.skin_above_k);
-  std::array<double, n_parts> temperatures{};
-  for (std::size_t i = 0; i < n_parts; ++i) {
-    const auto part = static_cast<Part>(i);
-    const std::string key(name(part));
-    const double covered_c = outside_of(local_share[i] * warmth.clothing_clo, skin_c, ambient_c);
-    const bool is_bare = std::ranges::find(warmth.bare, key) != warmth.bare.end();
-    if (const auto known = warmth.parts_c.find(key); known != warmth.parts_c.end()) {
-      temperatures[i] = known->second;
-    } else if (part == Part::head && is_bare) {
-      temperatures[i] = mixed(skin_c, outside_of(hair_clo, skin_c, ambient_c), warmth.hair_share);
-    } else if ((part == Part::left_forearm || part == Part::right_forearm) && !is_bare) {
-      temperatures[i] = mixed(covered_c, skin_c, hand_share);
-    } else {
-      temperatures[i] = is_bare ? skin_c : covered_c;
-    }
-  }
-  return temperatures;
-}
-
-namespace {
-
 // Ref: [Plagenhoef1983], table 4, male: fractions of the body's mass.
-constexpr double head_and_neck = 0.0828;
-constexpr double thorax = 0.201;
-constexpr double abdomen = 0.1306;
-constexpr double pelvis = 0.1366;
 constexpr double upper_arm = 0.0325;
 constexpr double forearm = 0.0187;
 constexpr double hand = 0.0065;
 constexpr double thigh = 0.105;
 constexpr double shank = 0.0475;
-constexpr double foot = 0.0143;
 
 constexpr double tissue_density_kg_m3 = 1050.0;  // assumed; limbs 1030-1100
 // Widths without a source, assumed; the range considered stands behind each.
@@ -105,20 +73,6 @@ Measures measures_of(double stature) {
   return m;
 }
 
-std::array<double, n_parts> masses_of(double mass) {
-  const double arm = forearm + hand;
-  std::array<double, n_parts> masses{
-      pelvis, thorax + abdomen, head_and_neck, upper_arm, upper_arm, arm, arm, thigh, thigh, shank, shank, foot, foot};
-  for (double& m : masses) m *= mass;
-  return masses;
-}
-
-/// A cylinder of the segment's mass and length; the round ends overlap at the joints.
-Capsule limb(double mass_kg, double length_m) {
-  const double radius = std::sqrt(mass_kg / (tissue_density_kg_m3 * std::numbers::pi * length_m));
-  return {radius, 0.5 * length_m};
-}
-
 Solids with_meshes(Solids solids, const BodyMeshes& meshes) {
   for (const auto& [name, mesh] : meshes) {
     const auto part = std::find(body_part_names.begin(), body_part_names.end(), name);
@@ -128,66 +82,6 @@ Solids with_meshes(Solids solids, const BodyMeshes& meshes) {
   }
   return solids;
 }
-
-}  // namespace
-
-Humanoid::Humanoid(const PersonSpec& person)
-    : measures_(measures_of(person.stature_m)),
-      masses_kg_(masses_of(person.mass_kg)),
-      walking_speed_m_s_(person.walking_speed_m_s) {
-  const Measures& m = measures_;
-  const double h = m.stature_m;
-  // Widths grow as those of a body of constant density do.
-  const double girth = std::sqrt((person.mass_kg / reference_mass_kg) / (h / reference_stature_m));
-  const auto set = [this](Part part, const Shape& shape) { primitives_[at(part)] = shape; };
-  const auto mass = [this](Part part) { return masses_kg_[at(part)]; };
-
-  set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
-  const double torso_half_height = 0.5 * (torso_top * h - m.hip_height_m - torso_bottom * h);
-  const Capsule arm = limb(mass(Part::left_upper_arm), m.upper_arm_m);
-  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, arm);
-  // A slender person's torso still reaches into the arms.
-  const double torso_half_width = std::max(torso_half_width_m * girth, 0.5 * (m.shoulder_width_m - arm.radius));
-  set(Part::torso, Box{{torso_half_width, torso_half_height, torso_half_depth_m * girth}});
-  set(Part::head, Sphere{head_radius * h});
-  for (const Part part : {Part::left_forearm, Part::right_forearm}) set(part, limb(mass(part), m.forearm_m));
-  for (const Part part : {Part::left_thigh, Part::right_thigh}) set(part, limb(mass(part), m.thigh_m));
-  for (const Part part : {Part::left_shank, Part::right_shank}) set(part, limb(mass(part), m.shank_m));
-  const Box foot_box{{0.5 * foot_width * h, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m}};
-  for (const Part part : {Part::left_foot, Part::right_foot}) set(part, foot_box);
-  solids_ = with_meshes(primitives_, person.body_meshes);
-  // Arms hang 10 degrees out from the shoulders.
-  constexpr double out = 0.1736;
-  clearance_radius_m_ = 0.5 * m.shoulder_width_m + out * m.upper_arm_m + radius_m(Part::left_upper_arm);
-}
-
-double Humanoid::half_depth_m() const noexcept {
-  constexpr double to_spare_m = 0.01;  // assumed (0-0.03)
-  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.z + to_spare_m;
-}
-
-double Humanoid::half_width_m() const noexcept {
-  constexpr double to_spare_m = 0.02;  // assumed (0-0.04)
-  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.x + to_spare_m;
-}
-
-double Humanoid::trunk_radius_m() const noexcept {
-  const Vec3& torso = std::get<Box>(primitives_[at(Part::torso)]).half_extents;
-  const auto& pelvis = std::get<Capsule>(primitives_[at(Part::pelvis)]);
-  return std::max(glm::length(Vec2(torso.x, torso.z)), pelvis.half_length + pelvis.radius);
-}
-
-double Humanoid::trunk_height_m() const noexcept { return torso_top * measures_.stature_m - measures_.hip_height_m; }
-
-double Humanoid::radius_m(Part part) const noexcept {
-  const Shape& shape = primitives_[at(part)];
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
-  const auto* sphere = std::get_if<Sphere>(&shape);
-  assert(sphere != nullptr);
-  return sphere->radius;
-}
-
-namespace {
 
 constexpr std::size_t at(Part left, std::size_t side) { return at(left) + side; }
 
@@ -248,6 +142,87 @@ void put_foot(const Measures& m, const Frame& ankle, std::size_t side, Posture& 
 
 }  // namespace
 
+std::string_view name(Part part) noexcept { return body_part_names[at(part)]; }
+
+std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c) {
+  const double skin_c = warmth.skin_c.value_or(skin_at_0_c + skin_per_k * ambient_c + warmth.skin_above_k);
+  std::array<double, n_parts> temperatures{};
+  for (std::size_t i = 0; i < n_parts; ++i) {
+    const auto part = static_cast<Part>(i);
+    const std::string key(name(part));
+    const double covered_c = outside_of(local_share[i] * warmth.clothing_clo, skin_c, ambient_c);
+    const bool is_bare = std::ranges::find(warmth.bare, key) != warmth.bare.end();
+    if (const auto known = warmth.parts_c.find(key); known != warmth.parts_c.end()) {
+      temperatures[i] = known->second;
+    } else if (part == Part::head && is_bare) {
+      temperatures[i] = mixed(skin_c, outside_of(hair_clo, skin_c, ambient_c), warmth.hair_share);
+    } else if ((part == Part::left_forearm || part == Part::right_forearm) && !is_bare) {
+      temperatures[i] = mixed(covered_c, skin_c, hand_share);
+    } else {
+      temperatures[i] = is_bare ? skin_c : covered_c;
+    }
+  }
+  return temperatures;
+}
+
+Humanoid::Humanoid(const PersonSpec& person)
+    : measures_(measures_of(person.stature_m)), walking_speed_m_s_(person.walking_speed_m_s) {
+  const Measures& m = measures_;
+  const double h = m.stature_m;
+  // Widths grow as those of a body of constant density do.
+  const double girth = std::sqrt((person.mass_kg / reference_mass_kg) / (h / reference_stature_m));
+  const auto set = [this](Part part, const Shape& shape) { primitives_[at(part)] = shape; };
+  /// A cylinder of the segment's share of the mass and length; the round ends overlap at the joints.
+  const auto limb = [&](double share, double length_m) -> Capsule {
+    const double radius = std::sqrt(share * person.mass_kg / (tissue_density_kg_m3 * std::numbers::pi * length_m));
+    return {radius, 0.5 * length_m};
+  };
+
+  set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
+  const double torso_half_height = 0.5 * (torso_top * h - m.hip_height_m - torso_bottom * h);
+  const Capsule arm = limb(upper_arm, m.upper_arm_m);
+  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, arm);
+  // A slender person's torso still reaches into the arms.
+  const double torso_half_width = std::max(torso_half_width_m * girth, 0.5 * (m.shoulder_width_m - arm.radius));
+  set(Part::torso, Box{{torso_half_width, torso_half_height, torso_half_depth_m * girth}});
+  set(Part::head, Sphere{head_radius * h});
+  for (const Part part : {Part::left_forearm, Part::right_forearm}) set(part, limb(forearm + hand, m.forearm_m));
+  for (const Part part : {Part::left_thigh, Part::right_thigh}) set(part, limb(thigh, m.thigh_m));
+  for (const Part part : {Part::left_shank, Part::right_shank}) set(part, limb(shank, m.shank_m));
+  const Box foot_box{{0.5 * foot_width * h, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m}};
+  for (const Part part : {Part::left_foot, Part::right_foot}) set(part, foot_box);
+  solids_ = with_meshes(primitives_, person.body_meshes);
+  // Arms hang 10 degrees out from the shoulders.
+  constexpr double out = 0.1736;
+  clearance_radius_m_ = 0.5 * m.shoulder_width_m + out * m.upper_arm_m + radius_m(Part::left_upper_arm);
+}
+
+double Humanoid::half_depth_m() const noexcept {
+  constexpr double to_spare_m = 0.01;  // assumed (0-0.03)
+  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.z + to_spare_m;
+}
+
+double Humanoid::half_width_m() const noexcept {
+  constexpr double to_spare_m = 0.02;  // assumed (0-0.04)
+  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.x + to_spare_m;
+}
+
+double Humanoid::trunk_radius_m() const noexcept {
+  const Vec3& torso = std::get<Box>(primitives_[at(Part::torso)]).half_extents;
+  const auto& pelvis = std::get<Capsule>(primitives_[at(Part::pelvis)]);
+  return std::max(glm::length(Vec2(torso.x, torso.z)), pelvis.half_length + pelvis.radius);
+}
+
+double Humanoid::trunk_height_m() const noexcept { return torso_top * measures_.stature_m - measures_.hip_height_m; }
+
+double Humanoid::radius_m(Part part) const noexcept {
+  const Shape& shape = primitives_[at(part)];
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
+  const auto* sphere = std::get_if<Sphere>(&shape);
+  assert(sphere != nullptr);
+  return sphere->radius;
+}
+
 Quat torso_rotation(const Pose& pose) noexcept {
   const Quat tilted = glm::angleAxis(-pose.spine_tilt, x_axis);
   return pose.spine_lean == 0.0 ? tilted : tilted * glm::angleAxis(-pose.spine_lean, z_axis);
@@ -305,134 +280,6 @@ Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept {
   Posture posture;
   update(posture, humanoid, pose, {});
   return posture;
-}
-
-// Joint limits, and joint angles as a posture has them.
-
-namespace {
-
-constexpr double rounding = 1e-6;  // degrees: a hinge is exact but for rounding
-
-struct Link {
-  Part parent;
-  Part child;
-};
-// In the order of Joint.
-constexpr std::array<Link, n_joints> links{{{Part::pelvis, Part::torso},
-                                            {Part::torso, Part::head},
-                                            {Part::torso, Part::left_upper_arm},
-                                            {Part::torso, Part::right_upper_arm},
-                                            {Part::left_upper_arm, Part::left_forearm},
-                                            {Part::right_upper_arm, Part::right_forearm},
-                                            {Part::pelvis, Part::left_thigh},
-                                            {Part::pelvis, Part::right_thigh},
-                                            {Part::left_thigh, Part::left_shank},
-                                            {Part::right_thigh, Part::right_shank},
-                                            {Part::left_shank, Part::left_foot},
-                                            {Part::right_shank, Part::right_foot}}};
-
-constexpr JointLimits degrees(const JointAngles& lower, const JointAngles& upper) {
-  return {{radians(lower.flexion), radians(lower.abduction), radians(lower.twist)},
-          {radians(upper.flexion), radians(upper.abduction), radians(upper.twist)}};
-}
-
-// Ref: [AAOS1965] for the ranges of motion; rows marked `assumed` differ from it, with the reason.
-constexpr JointLimits spine = degrees({-25, -35, -45}, {80, 35, 45});
-constexpr JointLimits neck = degrees({-45, -45, -60}, {45, 45, 60});
-constexpr JointLimits shoulder_limits = degrees({-60, -75, -90}, {180, 180, 90});
-constexpr JointLimits elbow = degrees({0, -rounding, -rounding}, {150, rounding, rounding});
-constexpr JointLimits hip = degrees({-30, -30, -45}, {120, 45, 45});
-// assumed 150 (135-155): calf against thigh.
-constexpr JointLimits knee = degrees({0, -rounding, -rounding}, {150, rounding, rounding});
-// assumed dorsiflexion 35 (30-45), which the ankle has under load; twist 35 (25-45) stands for the subtalar joint
-// and the rotation of the bent knee together, abduction for inversion and eversion.
-constexpr JointLimits ankle = degrees({-50, -35, -35}, {35, 35, 35});
-constexpr std::array<JointLimits, n_joints> table{
-    spine, neck, shoulder_limits, shoulder_limits, elbow, elbow, hip, hip, knee, knee, ankle, ankle};
-
-/// Sign of flexion about +X (thigh, forearm and toes forward and up are positive; spine and knee bend the other way).
-double flexion_sign(Joint joint) {
-  switch (joint) {
-    case Joint::spine:
-    case Joint::neck:
-    case Joint::left_knee:
-    case Joint::right_knee:
-      return -1.0;
-    default:
-      return 1.0;
-  }
-}
-/// +1 for joints of the right side and of the middle.
-double side_sign(Joint joint) {
-  const auto index = static_cast<std::size_t>(joint);
-  return index >= 2 && index % 2 == 0 ? -1.0 : 1.0;
-}
-/// The pelvis capsule lies on its side; joint angles count from the upright hips.
-Quat upright(const Posture& posture, Part part) {
-  const Quat& rotation = posture[at(part)].rotation;
-  return part == Part::pelvis ? rotation * glm::angleAxis(std::numbers::pi / 2, Vec3(0, 0, 1)) : rotation;
-}
-
-Vec3 joint_in(const Humanoid& humanoid, Part part, Joint joint, const Vec3& end) {
-  const auto side = static_cast<std::size_t>(joint) % 2;
-  const Measures& m = humanoid.measures();
-  if (part == Part::pelvis)
-    return joint == Joint::spine ? Vec3(0.0) : Vec3(0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m, 0);
-  const Shape& shape = humanoid.primitives()[at(part)];
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) return end * capsule->half_length;
-  return Vec3(0.0);
-}
-
-}  // namespace
-
-const JointLimits& limits(Joint joint) noexcept { return table[static_cast<std::size_t>(joint)]; }
-
-std::array<JointAngles, n_joints> joint_angles(const Posture& posture) noexcept {
-  std::array<JointAngles, n_joints> angles;
-  for (std::size_t i = 0; i < n_joints; ++i) {
-    const auto joint = static_cast<Joint>(i);
-    const Quat relative = glm::conjugate(upright(posture, links[i].parent)) * upright(posture, links[i].child);
-    // relative = Rx(flexion) Rz(abduction) Ry(twist)
-    const Vec3 x = relative * Vec3(1, 0, 0);
-    const Vec3 y = relative * Vec3(0, 1, 0);
-    const Vec3 z = relative * Vec3(0, 0, 1);
-    angles[i].flexion = flexion_sign(joint) * std::atan2(y.z, y.y);
-    angles[i].abduction = side_sign(joint) * std::asin(std::clamp(-y.x, -1.0, 1.0));
-    angles[i].twist = side_sign(joint) * std::atan2(z.x, x.x);
-  }
-  return angles;
-}
-
-JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint joint) noexcept {
-  const Link link = links[static_cast<std::size_t>(joint)];
-  const Measures& m = humanoid.measures();
-  const auto side = static_cast<std::size_t>(joint) % 2;
-  Vec3 in_parent = joint_in(humanoid, link.parent, joint, Vec3(0, -1, 0));
-  Vec3 in_child = joint_in(humanoid, link.child, joint, Vec3(0, 1, 0));
-  const Vec3 hips_in_torso = glm::conjugate(posture[at(Part::torso)].rotation) *
-                             (posture[at(Part::pelvis)].origin - posture[at(Part::torso)].origin);
-  const Vec3 in_torso(0, hips_in_torso.y, hips_in_torso.z);  // z: breath moves the solid and none of its joints
-  switch (joint) {
-    case Joint::spine:
-      in_child = in_torso;
-      break;
-    case Joint::left_shoulder:
-    case Joint::right_shoulder:
-      in_parent = in_torso + shoulder(m, side);
-      break;
-    case Joint::left_ankle:
-    case Joint::right_ankle:
-      in_child = Vec3(0, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m - m.heel_m);
-      break;
-    default:
-      break;
-  }
-  if (joint == Joint::neck) {
-    const double behind = neck_behind_m(m);
-    in_child = Vec3(0, -humanoid.radius_m(Part::head), behind);
-    in_parent = in_torso + Vec3(0, m.stature_m - 2.0 * humanoid.radius_m(Part::head) - m.hip_height_m, behind);
-  }
-  return {posture[at(link.parent)] * in_parent, posture[at(link.child)] * in_child};
 }
 
 }  // namespace pirsim::body

@@ -47,7 +47,7 @@ using Solids = std::array<Shape, n_parts>;
 /// both. Derivation: docs/physics/analog.md. Ref: [Mehnert2000, ISO7730].
 [[nodiscard]] std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c);
 
-// A person's fixed measures: segment lengths, masses, joint limits and the thirteen solids.
+// A person's fixed measures: segment lengths and the thirteen solids.
 
 /// Of the person whose widths and movements the sources give; those of others are scaled from theirs.
 inline constexpr double reference_stature_m = 1.86;
@@ -80,8 +80,6 @@ class Humanoid {
   [[nodiscard]] const Solids& solids() const noexcept { return solids_; }
   /// Spheres, capsules and boxes only: what kinematics reckons with, whatever the person looks like.
   [[nodiscard]] const Solids& primitives() const noexcept { return primitives_; }
-  /// Ref: [Plagenhoef1983]; sums to the person's mass.
-  [[nodiscard]] const std::array<double, n_parts>& masses_kg() const noexcept { return masses_kg_; }
   /// Radius of the vertical cylinder that a walking person keeps clear of obstacles, metres.
   [[nodiscard]] double clearance_radius_m() const noexcept { return clearance_radius_m_; }
   /// From a standing person's middle to the front and to the back: what they keep clear of where there is less room
@@ -103,12 +101,11 @@ class Humanoid {
   Measures measures_;
   Solids primitives_;
   Solids solids_;
-  std::array<double, n_parts> masses_kg_{};
   double clearance_radius_m_ = 0.0;
   double walking_speed_m_s_ = 1.0;
 };
 
-// The joint tree: from a few quantities that decide a posture to the thirteen parts, and back to joint angles.
+// The joint tree: from a few quantities that decide a posture to the thirteen parts.
 
 /// The circle on which the middle joint can lie: centre, radius (0 where the bones are stretched or folded).
 struct ElbowCircle {
@@ -166,42 +163,5 @@ struct Pose {
 /// The arm whose elbow and hand are at these points of the torso's frame; bone lengths win over the hand's place.
 [[nodiscard]] ArmPose arm_through(const Vec3& shoulder, const Vec3& elbow, const Vec3& hand) noexcept;
 [[nodiscard]] ArmPose blend(const ArmPose& a, const ArmPose& b, double weight_of_b) noexcept;
-
-/// Twelve joints below the root, which is the pelvis.
-enum class Joint : std::size_t {
-  spine,
-  neck,
-  left_shoulder,
-  right_shoulder,
-  left_elbow,
-  right_elbow,
-  left_hip,
-  right_hip,
-  left_knee,
-  right_knee,
-  left_ankle,
-  right_ankle,
-};
-inline constexpr std::size_t n_joints = 12;
-
-/// Radians. Child relative to parent: flexion, then abduction (away from the middle), then twist about the child's
-/// long axis (inwards).
-struct JointAngles {
-  double flexion = 0.0;
-  double abduction = 0.0;
-  double twist = 0.0;
-};
-struct JointLimits {
-  JointAngles lower;
-  JointAngles upper;
-};
-[[nodiscard]] const JointLimits& limits(Joint joint) noexcept;
-[[nodiscard]] std::array<JointAngles, n_joints> joint_angles(const Posture& posture) noexcept;
-/// The joint's place in the world as its parent has it, and as its child has it: the same point in a sound posture.
-struct JointPlaces {
-  Vec3 by_parent{0.0};
-  Vec3 by_child{0.0};
-};
-[[nodiscard]] JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint joint) noexcept;
 
 }  // namespace pirsim::body

@@ -74,11 +74,6 @@ std::vector<EffectInfo> list() {
 
 const EffectInfo& info(std::string_view name) { return find(name).info; }
 
-std::string judged_as(std::string_view name) {
-  const EffectInfo& info = find(name).info;
-  return info.same_as.empty() ? info.name : info.same_as;
-}
-
 std::vector<const Effect*> catalogue_for(const ScriptSpec& script) {
   const bool counts = std::ranges::any_of(
       script.trials, [](const TrialSpec& trial) { return trial.occupancy && trial.occupancy->counts; });
@@ -161,33 +156,6 @@ double drawn_value(const ParameterInfo& parameter, Stream& stream) {
   }
   return parameter.low + u * (parameter.high - parameter.low);
 }
-
-}  // namespace
-
-EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
-  EffectSpec spec{effect.info.name, {}, {}, {}};
-  for (const ParameterInfo& parameter : effect.info.parameters) {
-    spec.parameters[parameter.name] = drawn_value(parameter, stream);
-  }
-  for (const ChoiceInfo& choice : effect.info.choices) {
-    const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
-    if (is_word(choice.kind)) spec.choices[choice.name] = pick(choice.words);
-    if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
-  }
-  if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);
-  for (const ParameterInfo& parameter : effect.info.parameters) {
-    if (!applies(parameter, spec)) spec.parameters.erase(parameter.name);
-  }
-  return spec;
-}
-
-EffectSpec settled(EffectSpec effect, const SceneSpec& scene) {
-  const Effect& entry = find(effect.name);
-  if (entry.settle != nullptr) entry.settle(effect, scene);
-  return effect;
-}
-
-namespace {
 
 std::string with_unit(double value, const std::string& unit) {
   std::ostringstream out;
@@ -285,73 +253,6 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   }
   out << '\n';
 }
-
-}  // namespace
-
-std::string phrase_of(const ParameterInfo& parameter) {
-  if (!parameter.phrase.empty()) return parameter.phrase;
-  std::string_view name = parameter.name;
-  const std::string_view suffix = suffix_of(parameter.unit);
-  if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
-  return spaced(std::string(name));
-}
-
-std::string phrase_of(const ChoiceInfo& choice, const std::string& value) {
-  return spaced(choice.name) + " " + (is_word(choice.kind) ? spaced(value) : value);
-}
-
-std::string list_text() {
-  std::ostringstream out;
-  for (const Effect* effect : catalogue()) {
-    out << std::left << std::setw(18) << effect->info.name << std::setw(13) << name(effect->info.family);
-    const ParameterInfo& strength = effect->info.parameters.front();
-    const std::string range = range_of(strength);
-    out << std::setw(46)
-        << (strength.name + " (off " + off_of(strength) + "; " + range.substr(0, range.find(',')) + ")")
-        << effect->info.summary << '\n';
-  }
-  return out.str();
-}
-
-std::string to_text(const Effect& effect) {
-  const EffectInfo& info = effect.info;
-  std::ostringstream out;
-  out << info.name << " (" << name(info.family) << ")\n" << info.summary << "\n\n";
-  out << "fingerprint:      " << info.fingerprint << '\n';
-  out << "easily taken for: " << joined(info.confused_with, ", ") << '\n';
-  if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
-  if (!info.in_analog.empty()) out << "analog sensors:   " << info.in_analog << '\n';
-  out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
-  for (const ParameterInfo& parameter : info.parameters) {
-    out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)
-        << "typical " << std::setw(10) << with_unit(parameter.typical, parameter.unit) << "prior "
-        << range_of(parameter) << "\n                  accepted: " << limits_of(parameter)
-        << "\n                  source: " << source_of(parameter) << '\n';
-  }
-  for (const ChoiceInfo& choice : info.choices) {
-    out << "  " << std::left << std::setw(16) << choice.name << values_of(choice) << " (else: " << choice.otherwise
-        << ")\n";
-  }
-  out << "\nin a script:\n  effects:\n    " << in_script(effect) << '\n';
-  return out.str();
-}
-
-std::string list_markdown() {
-  std::ostringstream out;
-  constexpr std::array families{Family::optics,      Family::person,      Family::mounting, Family::occlusion,
-                                Family::electronics, Family::environment, Family::motion,   Family::data};
-  for (const Family family : families) {
-    out << "## " << name(family) << '\n';
-    for (const Effect* effect : catalogue()) {
-      if (effect->info.family == family) add_markdown(out, *effect);
-    }
-  }
-  return out.str();
-}
-
-// Faults of `effects:`, all at once.
-
-namespace {
 
 std::string text(double value) {
   std::ostringstream out;
@@ -483,6 +384,92 @@ void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diag
 }
 
 }  // namespace
+
+EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
+  EffectSpec spec{effect.info.name, {}, {}, {}};
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    spec.parameters[parameter.name] = drawn_value(parameter, stream);
+  }
+  for (const ChoiceInfo& choice : effect.info.choices) {
+    const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
+    if (is_word(choice.kind)) spec.choices[choice.name] = pick(choice.words);
+    if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
+  }
+  if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    if (!applies(parameter, spec)) spec.parameters.erase(parameter.name);
+  }
+  return spec;
+}
+
+EffectSpec settled(EffectSpec effect, const SceneSpec& scene) {
+  const Effect& entry = find(effect.name);
+  if (entry.settle != nullptr) entry.settle(effect, scene);
+  return effect;
+}
+
+std::string phrase_of(const ParameterInfo& parameter) {
+  if (!parameter.phrase.empty()) return parameter.phrase;
+  std::string_view name = parameter.name;
+  const std::string_view suffix = suffix_of(parameter.unit);
+  if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
+  return spaced(std::string(name));
+}
+
+std::string phrase_of(const ChoiceInfo& choice, const std::string& value) {
+  return spaced(choice.name) + " " + (is_word(choice.kind) ? spaced(value) : value);
+}
+
+std::string list_text() {
+  std::ostringstream out;
+  for (const Effect* effect : catalogue()) {
+    out << std::left << std::setw(18) << effect->info.name << std::setw(13) << name(effect->info.family);
+    const ParameterInfo& strength = effect->info.parameters.front();
+    const std::string range = range_of(strength);
+    out << std::setw(46)
+        << (strength.name + " (off " + off_of(strength) + "; " + range.substr(0, range.find(',')) + ")")
+        << effect->info.summary << '\n';
+  }
+  return out.str();
+}
+
+std::string to_text(const Effect& effect) {
+  const EffectInfo& info = effect.info;
+  std::ostringstream out;
+  out << info.name << " (" << name(info.family) << ")\n" << info.summary << "\n\n";
+  out << "fingerprint:      " << info.fingerprint << '\n';
+  out << "easily taken for: " << joined(info.confused_with, ", ") << '\n';
+  if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
+  if (!info.in_analog.empty()) out << "analog sensors:   " << info.in_analog << '\n';
+  out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
+  for (const ParameterInfo& parameter : info.parameters) {
+    out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)
+        << "typical " << std::setw(10) << with_unit(parameter.typical, parameter.unit) << "prior "
+        << range_of(parameter) << "\n                  accepted: " << limits_of(parameter)
+        << "\n                  source: " << source_of(parameter) << '\n';
+  }
+  for (const ChoiceInfo& choice : info.choices) {
+    out << "  " << std::left << std::setw(16) << choice.name << values_of(choice) << " (else: " << choice.otherwise
+        << ")\n";
+  }
+  out << "\nin a script:\n  effects:\n    " << in_script(effect) << '\n';
+  return out.str();
+}
+
+std::string list_markdown() {
+  std::ostringstream out;
+  constexpr std::array families{Family::optics,      Family::person,      Family::mounting, Family::occlusion,
+                                Family::electronics, Family::environment, Family::motion,   Family::data};
+  for (const Family family : families) {
+    out << "## " << name(family) << '\n';
+    for (const Effect* effect : catalogue()) {
+      if (effect->info.family == family) add_markdown(out, *effect);
+    }
+  }
+  return out.str();
+}
+
+// Faults of `effects:`, all at once.
 
 void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics) { check_all(effects, nullptr, diagnostics); }
 

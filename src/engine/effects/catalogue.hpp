@@ -35,12 +35,9 @@ struct Effect {
 /// Throws Error(usage) with the nearest name.
 [[nodiscard]] const Effect& find(std::string_view name);
 
-/// The entry that stands for it where data are judged: no data tell entries apart that are the same change of the
-/// model.
-[[nodiscard]] std::string judged_as(std::string_view name);
 /// Those that a script has what they need for, as counts of people.
 [[nodiscard]] std::vector<const Effect*> catalogue_for(const ScriptSpec& script);
-/// Names of the others that it stands for.
+/// Names of the others that change the model in the same way: no data tell them apart.
 [[nodiscard]] std::vector<std::string> twins_of(std::string_view name);
 
 /// The study with the effects of `script` applied: alter() of each, in the catalogue's order. Throws Error(input) for

@@ -53,6 +53,19 @@ namespace pirsim::effects {
           .source = std::move(source)};
 }
 
+/// An amount; 0 is off, and the least that is accepted.
+[[nodiscard]] inline ParameterInfo strength(std::string name, std::string unit, double typical, double low, double high,
+                                            double most, std::string source, Condition only_if = {}) {
+  return {.name = std::move(name),
+          .unit = std::move(unit),
+          .typical = typical,
+          .low = low,
+          .high = high,
+          .most = most,
+          .source = std::move(source),
+          .only_if = std::move(only_if)};
+}
+
 /// How something happens, without an off of its own; all in `unit`.
 [[nodiscard]] inline ParameterInfo detail(std::string name, std::string unit, double typical, double low, double high,
                                           double least, double most, std::string source, Condition only_if = {}) {
@@ -72,6 +85,12 @@ namespace pirsim::effects {
 /// The same, with words for a reader.
 [[nodiscard]] inline ParameterInfo told_as(std::string phrase, ParameterInfo parameter) {
   parameter.phrase = std::move(phrase);
+  return parameter;
+}
+
+/// The same, with a prior that spreads by factors.
+[[nodiscard]] inline ParameterInfo logarithmic(ParameterInfo parameter) {
+  parameter.scale = Scale::logarithmic;
   return parameter;
 }
 

@@ -106,8 +106,7 @@ void keep_sideways(std::vector<Way>& ways, const SensorModelSpec& model, const V
 
 std::vector<Crossing> crossings(const SensorModelSpec& model, std::size_t cluster, int n_zones, int rays_per_zone) {
   const ClusterSpec& facet = model.clusters[cluster];
-  std::vector<std::vector<WeightedDirection>> rays;
-  for (const ZoneSpec& zone : facet.zones) rays.push_back(symmetric_quadrature(model, zone, rays_per_zone));
+  const std::vector<std::vector<WeightedDirection>> rays = symmetric_quadrature(model, facet.zones, rays_per_zone);
   std::vector<Way> ways = ways_through(facet.zones, n_zones);
   keep_sideways(ways, model, facet.centre);
   std::vector<Crossing> found;

@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "pirsim/geometry.hpp"
 
@@ -26,18 +29,6 @@ double tail(double x) {
   }
   return sum;
 }
-
-}  // namespace
-
-double band_radiance(double temperature_k, const Band& band) {
-  if (temperature_k <= 0.0) return 0.0;
-  const double thermal_j = boltzmann_j_k * temperature_k;
-  const auto x_of = [&](double wavelength_um) { return planck_j_s * light_m_s / (wavelength_um * 1e-6 * thermal_j); };
-  const double scale = 2.0 * std::pow(thermal_j, 4) / (std::pow(planck_j_s, 3) * light_m_s * light_m_s);
-  return scale * (tail(x_of(band.to_um)) - tail(x_of(band.from_um)));
-}
-
-namespace {
 
 Vec3 direction_through(const SensorModelSpec& model, const Vec2& point) {
   return glm::normalize(Vec3(point.x, point.y, -model.plane_m));
@@ -100,7 +91,134 @@ Vec2 meeting_point(const Edge& a, const Edge& b) {
          det;
 }
 
+void append_level(RayBundle& bundle, const Frame& frame, const SensorModelSpec& model, RaysPerZone rays,
+                  double growth) {
+  for (const ClusterSpec& cluster : model.clusters) {
+    for (const ZoneSpec& zone : cluster.zones) {
+      for (const Vec3& direction : zone_directions(model, grown(model, zone, growth), rays)) {
+        bundle.rays.push_back({Vec3f(frame.origin), Vec3f(glm::normalize(frame.rotation * direction))});
+        bundle.range.push_back(static_cast<float>(cluster.range_m));
+      }
+      bundle.zone_rays_begin.push_back(static_cast<std::uint32_t>(bundle.rays.size()));
+    }
+    bundle.cluster_zones_begin.push_back(static_cast<std::uint32_t>(bundle.n_zones()));
+  }
+}
+
+/// One side of a zone, 0 to 1, blurred by a Gaussian: the sum of a uniform and a normal variable.
+class BlurredSide {
+ public:
+  explicit BlurredSide(double sigma) : sigma_(sigma) {}
+
+  /// Where the share `p` of the side's sensitivity lies below.
+  [[nodiscard]] double quantile(double p) const {
+    if (sigma_ <= 0.0) return p;
+    double low = -10.0 * sigma_, high = 1.0 + 10.0 * sigma_, x = 0.5;
+    constexpr int most_steps = 60;
+    for (int i = 0; i < most_steps; ++i) {  // Newton's, kept within what is known
+      const double excess = share_below(x) - p;
+      (excess < 0.0 ? low : high) = x;
+      const double step = excess / density(x);
+      const bool inside = x - step > low && x - step < high;
+      x = inside ? x - step : 0.5 * (low + high);
+      if (inside && std::abs(step) < 1e-13) break;
+    }
+    return x;
+  }
+
+ private:
+  [[nodiscard]] double share_below(double x) const {
+    return sigma_ * (integral_of_normal(x / sigma_) - integral_of_normal((x - 1.0) / sigma_));
+  }
+  [[nodiscard]] double density(double x) const { return normal_below(x / sigma_) - normal_below((x - 1.0) / sigma_); }
+  static double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+  /// Of the standard normal distribution function, from -infinity to z.
+  static double integral_of_normal(double z) {
+    return z * normal_below(z) + std::exp(-0.5 * z * z) / std::sqrt(2.0 * pi);
+  }
+
+  double sigma_;
+};
+
+/// Quantiles at the same shares of many sides. Zones that look alike are blurred alike, and each blur is worked out
+/// once.
+class BlurredSides {
+ public:
+  explicit BlurredSides(std::vector<double> shares) : shares_(std::move(shares)) {}
+
+  /// (n_shares)
+  const std::vector<double>& quantiles(double sigma) {
+    std::vector<double>& known = known_[sigma];
+    const BlurredSide side(sigma);
+    for (std::size_t i = known.size(); i < shares_.size(); ++i) known.push_back(side.quantile(shares_[i]));
+    return known;
+  }
+
+ private:
+  std::vector<double> shares_;
+  std::map<double, std::vector<double>> known_;  ///< by sigma
+};
+
+Vec3 on_plane(const SensorModelSpec& model, const Vec2& point) { return {point.x, point.y, -model.plane_m}; }
+
+/// Ref: [VanOosterom1983]; corners as seen from the origin, signed by the sense of going round.
+double triangle_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  const double volume = glm::dot(a, glm::cross(b, c));
+  const double rest = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  return 2.0 * std::atan2(volume, rest);
+}
+
+/// A zone as its point spread blurs it, over the unit square.
+class BlurredZone {
+ public:
+  BlurredZone(const SensorModelSpec& model, const ZoneSpec& zone) : model_(model), zone_(zone) {}
+
+  [[nodiscard]] double sigma_along() const { return sigma(1); }
+  [[nodiscard]] double sigma_across() const { return sigma(3); }
+  /// Through points of the square, each worth as much of the zone.
+  [[nodiscard]] std::vector<WeightedDirection> through(std::span<const Vec2> points) const {
+    std::vector<WeightedDirection> directions;
+    double sum = 0.0;
+    for (const Vec2& at : points) {
+      const Vec3 point = on_plane(model_, bilinear(zone_.corners, at.x, at.y));
+      const double distance = glm::length(point);
+      directions.push_back({point / distance, 1.0 / (distance * distance * distance)});  // as a plane's area is seen
+      sum += directions.back().solid_angle_sr;
+    }
+    const double scale = solid_angle_sr(model_, zone_) / sum;
+    for (WeightedDirection& each : directions) each.solid_angle_sr *= scale;
+    return directions;
+  }
+
+ private:
+  /// Of the side from the first corner to another one. As the zone law has it, an angle covers |(x, y, plane)| times
+  /// itself along the drawing's axes.
+  [[nodiscard]] double sigma(std::size_t corner) const {
+    const double reach_m = glm::length(on_plane(model_, centre_of(zone_.corners)));
+    const double blur_m = std::tan(radians(model_.optics.blur_deg)) * reach_m;
+    return blur_m / glm::length(zone_.corners[corner] - zone_.corners[0]);
+  }
+
+  const SensorModelSpec& model_;
+  const ZoneSpec& zone_;
+};
+
+/// Point i of n of a rank-1 lattice.
+Vec2 lattice_point(int i, int n) {
+  double ignored = 0.0;
+  return {(i + 0.5) / n, std::modf((i + 0.5) * std::numbers::phi, &ignored)};
+}
+
 }  // namespace
+
+double band_radiance(double temperature_k, const Band& band) {
+  if (temperature_k <= 0.0) return 0.0;
+  const double thermal_j = boltzmann_j_k * temperature_k;
+  const auto x_of = [&](double wavelength_um) { return planck_j_s * light_m_s / (wavelength_um * 1e-6 * thermal_j); };
+  const double scale = 2.0 * std::pow(thermal_j, 4) / (std::pow(planck_j_s, 3) * light_m_s * light_m_s);
+  return scale * (tail(x_of(band.to_um)) - tail(x_of(band.from_um)));
+}
 
 ZoneSpec grown(const SensorModelSpec& model, const ZoneSpec& zone, double angle) {
   if (angle == 0.0) return zone;
@@ -143,24 +261,6 @@ std::vector<Vec3> zone_directions(const SensorModelSpec& model, const ZoneSpec& 
   return directions;
 }
 
-namespace {
-
-void append_level(RayBundle& bundle, const Frame& frame, const SensorModelSpec& model, RaysPerZone rays,
-                  double growth) {
-  for (const ClusterSpec& cluster : model.clusters) {
-    for (const ZoneSpec& zone : cluster.zones) {
-      for (const Vec3& direction : zone_directions(model, grown(model, zone, growth), rays)) {
-        bundle.rays.push_back({Vec3f(frame.origin), Vec3f(glm::normalize(frame.rotation * direction))});
-        bundle.range.push_back(static_cast<float>(cluster.range_m));
-      }
-      bundle.zone_rays_begin.push_back(static_cast<std::uint32_t>(bundle.rays.size()));
-    }
-    bundle.cluster_zones_begin.push_back(static_cast<std::uint32_t>(bundle.n_zones()));
-  }
-}
-
-}  // namespace
-
 void append(RayBundle& bundle, const SensorSpec& sensor, const SensorModelSpec& model, RaysPerZone rays,
             std::span<const double> levels) {
   constexpr std::array hard{0.0};
@@ -170,132 +270,60 @@ void append(RayBundle& bundle, const SensorSpec& sensor, const SensorModelSpec& 
   bundle.sensor_clusters_begin.push_back(static_cast<std::uint32_t>(bundle.n_clusters()));
 }
 
-namespace {
-
-/// One side of a zone, 0 to 1, blurred by a Gaussian: the sum of a uniform and a normal variable.
-class BlurredSide {
- public:
-  explicit BlurredSide(double sigma) : sigma_(sigma) {}
-
-  /// Where the share `p` of the side's sensitivity lies below.
-  [[nodiscard]] double quantile(double p) const {
-    if (sigma_ <= 0.0) return p;
-    double low = -10.0 * sigma_, high = 1.0 + 10.0 * sigma_, x = 0.5;
-    constexpr int most_steps = 60;
-    for (int i = 0; i < most_steps; ++i) {  // Newton's, kept within what is known
-      const double excess = share_below(x) - p;
-      (excess < 0.0 ? low : high) = x;
-      const double step = excess / density(x);
-      const bool inside = x - step > low && x - step < high;
-      x = inside ? x - step : 0.5 * (low + high);
-      if (inside && std::abs(step) < 1e-13) break;
-    }
-    return x;
-  }
-
- private:
-  [[nodiscard]] double share_below(double x) const {
-    return sigma_ * (integral_of_normal(x / sigma_) - integral_of_normal((x - 1.0) / sigma_));
-  }
-  [[nodiscard]] double density(double x) const { return normal_below(x / sigma_) - normal_below((x - 1.0) / sigma_); }
-  static double normal_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-  /// Of the standard normal distribution function, from -infinity to z.
-  static double integral_of_normal(double z) {
-    return z * normal_below(z) + std::exp(-0.5 * z * z) / std::sqrt(2.0 * pi);
-  }
-
-  double sigma_;
-};
-
-Vec3 on_plane(const SensorModelSpec& model, const Vec2& point) { return {point.x, point.y, -model.plane_m}; }
-
-/// Ref: [VanOosterom1983]; corners as seen from the origin, signed by the sense of going round.
-double triangle_solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double volume = glm::dot(a, glm::cross(b, c));
-  const double rest = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return 2.0 * std::atan2(volume, rest);
-}
-
-}  // namespace
-
 double solid_angle_sr(const SensorModelSpec& model, const ZoneSpec& zone) {
   const auto corner = [&](std::size_t i) { return on_plane(model, zone.corners[i]); };
   return std::abs(triangle_solid_angle(corner(0), corner(1), corner(2)) +
                   triangle_solid_angle(corner(0), corner(2), corner(3)));
 }
 
-namespace {
-
-/// A zone as its point spread blurs it, over the unit square.
-class BlurredZone {
- public:
-  BlurredZone(const SensorModelSpec& model, const ZoneSpec& zone)
-      : model_(model), zone_(zone), along_(blur(1)), across_(blur(3)) {}
-
-  [[nodiscard]] const BlurredSide& along() const noexcept { return along_; }
-  [[nodiscard]] const BlurredSide& across() const noexcept { return across_; }
-  /// Through points of the square, each worth as much of the zone.
-  [[nodiscard]] std::vector<WeightedDirection> through(std::span<const Vec2> points) const {
-    std::vector<WeightedDirection> directions;
-    double sum = 0.0;
-    for (const Vec2& at : points) {
-      const Vec3 point = on_plane(model_, bilinear(zone_.corners, at.x, at.y));
-      const double distance = glm::length(point);
-      directions.push_back({point / distance, 1.0 / (distance * distance * distance)});  // as a plane's area is seen
-      sum += directions.back().solid_angle_sr;
-    }
-    const double scale = solid_angle_sr(model_, zone_) / sum;
-    for (WeightedDirection& each : directions) each.solid_angle_sr *= scale;
-    return directions;
-  }
-
- private:
-  /// Of the side from the first corner to another one. As the zone law has it, an angle covers |(x, y, plane)| times
-  /// itself along the drawing's axes.
-  [[nodiscard]] BlurredSide blur(std::size_t corner) const {
-    const double reach_m = glm::length(on_plane(model_, centre_of(zone_.corners)));
-    const double blur_m = std::tan(radians(model_.optics.blur_deg)) * reach_m;
-    return BlurredSide(blur_m / glm::length(zone_.corners[corner] - zone_.corners[0]));
-  }
-
-  const SensorModelSpec& model_;
-  const ZoneSpec& zone_;
-  BlurredSide along_, across_;
-};
-
-/// Point i of n of a rank-1 lattice.
-Vec2 lattice_point(int i, int n) {
-  double ignored = 0.0;
-  return {(i + 0.5) / n, std::modf((i + 0.5) * std::numbers::phi, &ignored)};
-}
-
-}  // namespace
-
-std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n) {
-  const BlurredZone blurred(model, zone);
-  std::vector<Vec2> points;
+std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, std::span<const ZoneSpec> zones, int n) {
+  std::vector<double> xs, ys;
   for (int i = 0; i < n; ++i) {
     const Vec2 at = lattice_point(i, n);
-    points.emplace_back(blurred.along().quantile(at.x), blurred.across().quantile(at.y));
+    xs.push_back(at.x);
+    ys.push_back(at.y);
   }
-  return blurred.through(points);
+  BlurredSides along(std::move(xs)), across(std::move(ys));
+  std::vector<WeightedDirection> directions;
+  for (const ZoneSpec& zone : zones) {
+    const BlurredZone blurred(model, zone);
+    const std::vector<double>&us = along.quantiles(blurred.sigma_along()),
+          &vs = across.quantiles(blurred.sigma_across());
+    std::vector<Vec2> points;
+    for (std::size_t i = 0; i < us.size(); ++i) points.emplace_back(us[i], vs[i]);
+    std::ranges::copy(blurred.through(points), std::back_inserter(directions));
+  }
+  return directions;
 }
 
-std::vector<WeightedDirection> symmetric_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n) {
-  const BlurredZone blurred(model, zone);
-  std::vector<Vec2> points;
-  const auto add_mirrored = [&](double along, double across) {
-    for (const double u : {along, 1.0 - along}) {
-      for (const double v : {across, 1.0 - across}) points.emplace_back(u, v);
-    }
-  };
-  for (int i = 0; i < n / 8; ++i) {
-    const Vec2 at = lattice_point(i, n / 8);
-    add_mirrored(blurred.along().quantile(at.x), blurred.across().quantile(at.y));
-    add_mirrored(blurred.along().quantile(at.y), blurred.across().quantile(at.x));
+std::vector<std::vector<WeightedDirection>> symmetric_quadrature(const SensorModelSpec& model,
+                                                                 std::span<const ZoneSpec> zones, int n) {
+  const auto n_points = static_cast<std::size_t>(n / 8);
+  std::vector<double> shares(2 * n_points);  // all x, then all y
+  for (std::size_t i = 0; i < n_points; ++i) {
+    const Vec2 at = lattice_point(static_cast<int>(i), n / 8);
+    shares[i] = at.x;
+    shares[n_points + i] = at.y;
   }
-  return blurred.through(points);
+  BlurredSides sides(std::move(shares));
+  std::vector<std::vector<WeightedDirection>> directions;
+  for (const ZoneSpec& zone : zones) {
+    const BlurredZone blurred(model, zone);
+    const std::vector<double>&us = sides.quantiles(blurred.sigma_along()),
+          &vs = sides.quantiles(blurred.sigma_across());
+    std::vector<Vec2> points;
+    const auto add_mirrored = [&](double along, double across) {
+      for (const double u : {along, 1.0 - along}) {
+        for (const double v : {across, 1.0 - across}) points.emplace_back(u, v);
+      }
+    };
+    for (std::size_t i = 0; i < n_points; ++i) {
+      add_mirrored(us[i], vs[n_points + i]);
+      add_mirrored(us[n_points + i], vs[i]);
+    }
+    directions.push_back(blurred.through(points));
+  }
+  return directions;
 }
 
 double aperture_m2(const OpticsSpec& optics) noexcept {
@@ -304,14 +332,10 @@ double aperture_m2(const OpticsSpec& optics) noexcept {
 }
 
 std::vector<WeightedDirection> lens_quadrature(const SensorModelSpec& model, int rays_per_zone) {
-  std::vector<WeightedDirection> directions;
-  for (const ClusterSpec& cluster : model.clusters) {
-    for (const ZoneSpec& zone : cluster.zones) {
-      const std::vector<WeightedDirection> more = zone_quadrature(model, zone, rays_per_zone);
-      directions.insert(directions.end(), more.begin(), more.end());
-    }
-  }
-  return directions;
+  std::vector<ZoneSpec> zones;
+  for (const ClusterSpec& cluster : model.clusters)
+    zones.insert(zones.end(), cluster.zones.begin(), cluster.zones.end());
+  return zone_quadrature(model, zones, rays_per_zone);
 }
 
 void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
@@ -344,11 +368,9 @@ void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& fiel
   constexpr float blind_m = 0.01F;  // range of a ray that sees nothing
   const double side = radians(field.side_deg);
   for (const std::uint32_t sensor : field.sensors) {
-    const auto zone_begin = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
-    const auto zone_end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
     const Quat sensor_from_world = glm::conjugate(scene.sensors[sensor].world_from_sensor.rotation);
     std::vector<std::pair<double, std::size_t>> towards_side;  // (n_rays) how far, and which
-    for (std::size_t i = bundle.zone_rays_begin[zone_begin]; i < bundle.zone_rays_begin[zone_end]; ++i) {
+    for (std::size_t i = bundle.first_ray(sensor); i < bundle.first_ray(sensor + 1); ++i) {
       const Vec3 d = sensor_from_world * Vec3(bundle.rays[i].direction);
       towards_side.emplace_back(std::cos(side) * d.x + std::sin(side) * d.y, i);
     }

@@ -53,13 +53,15 @@ struct WeightedDirection {
 /// Of the zone's outline as drawn, steradian. Ref: [VanOosterom1983].
 [[nodiscard]] double solid_angle_sr(const SensorModelSpec& model, const ZoneSpec& zone);
 
-/// `n` >= 1 directions spread evenly (a rank-1 lattice of the golden ratio) over the zone as the lens' point spread
-/// blurs it: where the zone is half as sensitive they lie half as dense. Their weights sum to the zone's solid angle.
-[[nodiscard]] std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n);
-/// The same of `n` directions, a multiple of 8: a lattice of an eighth of them, turned and mirrored in all 8 ways. So
-/// it is the same whichever corner comes first.
-[[nodiscard]] std::vector<WeightedDirection> symmetric_quadrature(const SensorModelSpec& model, const ZoneSpec& zone,
-                                                                  int n);
+/// For each zone, one after the other, `n` >= 1 directions spread evenly (a rank-1 lattice of the golden ratio) over
+/// the zone as the lens' point spread blurs it: where the zone is half as sensitive they lie half as dense. Their
+/// weights sum to the zone's solid angle.
+[[nodiscard]] std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model,
+                                                             std::span<const ZoneSpec> zones, int n);
+/// (n_zones) The same of `n` directions, a multiple of 8: a lattice of an eighth of them, turned and mirrored in all 8
+/// ways. So it is the same whichever corner comes first.
+[[nodiscard]] std::vector<std::vector<WeightedDirection>> symmetric_quadrature(const SensorModelSpec& model,
+                                                                               std::span<const ZoneSpec> zones, int n);
 
 // The rays of the physical response, each with what it is worth.
 

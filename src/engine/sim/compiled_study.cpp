@@ -28,70 +28,6 @@ std::vector<int> lens_steps(const SensorModelSpec& model) {
   return {steps.begin(), steps.end()};
 }
 
-}  // namespace
-
-const PowerModel::Lens& PowerModel::lens(const SensorModelSpec& model, const SensingInForce& sensing,
-                                         const PowerModel* like) {
-  std::shared_ptr<const Lens>& known = lenses_[model.id];
-  if (known) return *known;
-  Lens lens{model, sensing.analog_rays_per_zone, {}};
-  // Two blurs in a row are one of their root sum of squares.
-  lens.model.optics.blur_deg = glm::length(Vec2(model.optics.blur_deg, sensing.soft_edges.sigma_deg));
-  if (like != nullptr) {
-    const auto other = like->lenses_.find(model.id);
-    if (other != like->lenses_.end() && other->second->rays_per_zone == lens.rays_per_zone &&
-        same(other->second->model, lens.model)) {
-      return *(known = other->second);
-    }
-  }
-  lens.quadrature = pir::lens_quadrature(lens.model, lens.rays_per_zone);
-  return *(known = std::make_shared<const Lens>(std::move(lens)));
-}
-
-PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
-                       const PowerModel* like)
-    : rays_(std::make_unique<pir::PowerRays>()) {
-  const RayBundle& bundle = rays_->bundle;
-  for (const SensorSpec& sensor : scene.sensors) {
-    if (response_of(scene, sensing, sensor) != Response::analog) {
-      pir::append_blind(*rays_);
-      receivers_begin_.push_back(receivers_begin_.back());
-      continue;
-    }
-    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    const std::size_t first_cluster = bundle.n_clusters();
-    pir::append(*rays_, sensor, model, lens(model, sensing, like).quadrature);
-    const std::vector<int> steps = lens_steps(model);
-    for (std::size_t c = 0; c < model.clusters.size(); ++c) {
-      const auto step = std::ranges::lower_bound(steps, model.clusters[c].lens_step) - steps.begin();
-      const std::size_t end = bundle.zone_rays_begin[bundle.cluster_zones_begin[first_cluster + c + 1]];
-      receivers_.resize(end, receivers_begin_.back() + static_cast<std::uint32_t>(step));
-    }
-    receivers_begin_.push_back(receivers_begin_.back() + static_cast<std::uint32_t>(steps.size()));
-  }
-  for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays_->bundle, scene, field);
-  clipped_ = std::make_unique<RayBundle>(rays_->bundle);
-  const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
-  std::vector<double> mesh_radiances;
-  for (const TriMesh& mesh : scene.meshes) {
-    mesh_radiances.push_back(mesh.temperature_c ? pir::band_radiance(pir::kelvin(*mesh.temperature_c)) : ambient);
-  }
-  for (std::size_t i = 0; i < clipped_->rays.size(); ++i) {
-    const auto hit = room.first_hit(clipped_->rays[i], clipped_->range[i]);
-    if (hit) clipped_->range[i] = hit->distance;
-    backgrounds_.push_back(hit ? mesh_radiances[hit->mesh] : ambient);
-  }
-}
-
-BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
-  const auto temperatures_c = body::surface_temperatures_c(warmth, ambient_c);
-  BodyRadiance radiance{};
-  for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = pir::band_radiance(pir::kelvin(temperatures_c[i]));
-  return radiance;
-}
-
-namespace {
-
 CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
   const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
@@ -124,25 +60,6 @@ std::shared_ptr<const CalibratedSensor> with_gain(const SensorModelSpec& model, 
   for (const double watts : sensor.rated_watts_per_step) sensor.watts_per_step.push_back(watts * gain);
   return std::make_shared<const CalibratedSensor>(std::move(sensor));
 }
-
-}  // namespace
-
-bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) {
-  return std::ranges::any_of(
-      scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });
-}
-
-AnalogModel::AnalogModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
-                         const AnalogModel* like) {
-  for (const SensorSpec& sensor : scene.sensors) {
-    const bool is_analog = response_of(scene, sensing, sensor) == Response::analog;
-    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    sensors_.push_back(is_analog ? with_gain(model, 1.0 / sensing.tick_rate_hz, sensor.gain, sensors_, like) : nullptr);
-  }
-  power_ = std::make_unique<PowerModel>(scene, sensing, room, like != nullptr ? &like->power() : nullptr);
-}
-
-namespace {
 
 struct Continuation {
   Ray ray;
@@ -235,7 +152,84 @@ RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, cons
   return rays;
 }
 
+const rt::LeafCuts* of(const std::optional<rt::LeafCuts>& cuts) { return cuts ? &*cuts : nullptr; }
+
 }  // namespace
+
+const PowerModel::Lens& PowerModel::lens(const SensorModelSpec& model, const SensingInForce& sensing,
+                                         const PowerModel* like) {
+  std::shared_ptr<const Lens>& known = lenses_[model.id];
+  if (known) return *known;
+  Lens lens{model, sensing.analog_rays_per_zone, {}};
+  // Two blurs in a row are one of their root sum of squares.
+  lens.model.optics.blur_deg = glm::length(Vec2(model.optics.blur_deg, sensing.soft_edges.sigma_deg));
+  if (like != nullptr) {
+    const auto other = like->lenses_.find(model.id);
+    if (other != like->lenses_.end() && other->second->rays_per_zone == lens.rays_per_zone &&
+        same(other->second->model, lens.model)) {
+      return *(known = other->second);
+    }
+  }
+  lens.quadrature = pir::lens_quadrature(lens.model, lens.rays_per_zone);
+  return *(known = std::make_shared<const Lens>(std::move(lens)));
+}
+
+PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
+                       const PowerModel* like)
+    : rays_(std::make_unique<pir::PowerRays>()) {
+  const RayBundle& bundle = rays_->bundle;
+  for (const SensorSpec& sensor : scene.sensors) {
+    if (response_of(scene, sensing, sensor) != Response::analog) {
+      pir::append_blind(*rays_);
+      receivers_begin_.push_back(receivers_begin_.back());
+      continue;
+    }
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
+    const std::size_t first_cluster = bundle.n_clusters();
+    pir::append(*rays_, sensor, model, lens(model, sensing, like).quadrature);
+    const std::vector<int> steps = lens_steps(model);
+    for (std::size_t c = 0; c < model.clusters.size(); ++c) {
+      const auto step = std::ranges::lower_bound(steps, model.clusters[c].lens_step) - steps.begin();
+      const std::size_t end = bundle.zone_rays_begin[bundle.cluster_zones_begin[first_cluster + c + 1]];
+      receivers_.resize(end, receivers_begin_.back() + static_cast<std::uint32_t>(step));
+    }
+    receivers_begin_.push_back(receivers_begin_.back() + static_cast<std::uint32_t>(steps.size()));
+  }
+  for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays_->bundle, scene, field);
+  clipped_ = std::make_unique<RayBundle>(rays_->bundle);
+  const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
+  std::vector<double> mesh_radiances;
+  for (const TriMesh& mesh : scene.meshes) {
+    mesh_radiances.push_back(mesh.temperature_c ? pir::band_radiance(pir::kelvin(*mesh.temperature_c)) : ambient);
+  }
+  for (std::size_t i = 0; i < clipped_->rays.size(); ++i) {
+    const auto hit = room.first_hit(clipped_->rays[i], clipped_->range[i]);
+    if (hit) clipped_->range[i] = hit->distance;
+    backgrounds_.push_back(hit ? mesh_radiances[hit->mesh] : ambient);
+  }
+}
+
+BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
+  const auto temperatures_c = body::surface_temperatures_c(warmth, ambient_c);
+  BodyRadiance radiance{};
+  for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = pir::band_radiance(pir::kelvin(temperatures_c[i]));
+  return radiance;
+}
+
+bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) {
+  return std::ranges::any_of(
+      scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });
+}
+
+AnalogModel::AnalogModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
+                         const AnalogModel* like) {
+  for (const SensorSpec& sensor : scene.sensors) {
+    const bool is_analog = response_of(scene, sensing, sensor) == Response::analog;
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
+    sensors_.push_back(is_analog ? with_gain(model, 1.0 / sensing.tick_rate_hz, sensor.gain, sensors_, like) : nullptr);
+  }
+  power_ = std::make_unique<PowerModel>(scene, sensing, room, like != nullptr ? &like->power() : nullptr);
+}
 
 SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room,
                          const SensorArray* like)
@@ -268,11 +262,7 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   }
   ZoneSet unheard(clipped_.n_zones());
   for (std::size_t i = 0; i < n_sensors(); ++i) {
-    if (!is_analog(i)) continue;
-    const std::uint32_t end = clipped_.cluster_zones_begin[clipped_.sensor_clusters_begin[i + 1]];
-    for (auto zone = clipped_.cluster_zones_begin[clipped_.sensor_clusters_begin[i]]; zone < end; ++zone) {
-      unheard.insert(zone);
-    }
+    if (is_analog(i)) unheard.insert(clipped_.first_zone(i), clipped_.first_zone(i + 1));
   }
   if (std::ranges::all_of(analog_->sensors(), [](const auto& sensor) { return sensor != nullptr; })) return;
   of_zone_sensors_.emplace(without(rated_, unheard), without(clipped_, unheard));
@@ -300,12 +290,6 @@ std::vector<float> SensorArray::range(std::span<const LeafStep> steps) const {
   cuts_->cut(steps, range);
   return range;
 }
-
-namespace {
-
-const rt::LeafCuts* of(const std::optional<rt::LeafCuts>& cuts) { return cuts ? &*cuts : nullptr; }
-
-}  // namespace
 
 std::unique_ptr<rt::Tracer> SensorArray::make_tracer(TracerKind kind, ZonesOf whose) const {
   if (whose == ZonesOf::all_sensors || !analog_) {

@@ -7,12 +7,7 @@
 
 #include "model/schema/clock.hpp"
 
-// Who meets when and in which room, on one day.
-
 namespace pirsim::sim {
-
-/// Adds the day's meetings, and puts those of the staff into their stays. draw: with the stays of all staff.
-void draw_meetings(const DaySource& source, DayDraw& draw);
 
 namespace {
 
@@ -139,31 +134,18 @@ double around(Stream& stream, const ClockSpec& clock) {
 
 double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
 
-action::Work draw_desk_work(Stream& stream) {
+std::vector<action::Work> draw_desk_work(Stream& stream, double for_s) {
   constexpr double shortest_s = 2.0 * minute_s, further_s = 8.0 * minute_s;  // assumed: an activity (means of 5-20 min)
-  action::Work work;
-  work.duration_s = shortest_s + exponential(stream, further_s);
-  const double u = stream.uniform();  // assumed shares: typing 0.65 (0.5-0.8), reading 0.25, phone 0.1
-  work.activity = u < 0.65 ? Activity::typing : u < 0.90 ? Activity::reading : Activity::phone;
-  return work;
-}
-
-DayDraw draw_times(const DaySource& source) {
-  DayDraw draw;
-  draw.stays.resize(source.people.size());
-  if (!is_working_day(source.day)) return draw;
-  for (std::size_t i = 0; i < source.people.size(); ++i) {
-    const auto& person = source.people[i];
-    if (!person) continue;
-    Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
-    if (person->part == SchedulePart::cleaner)
-      draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
-    if (person->part != SchedulePart::staff) continue;
-    draw.stays[i] = draw_agent(source.schedule, person->role, stream);
+  std::vector<action::Work> works;
+  for (double left_s = for_s; left_s > 0.0;) {
+    action::Work& work = works.emplace_back();
+    work.duration_s = shortest_s + exponential(stream, further_s);
+    const double u = stream.uniform();  // assumed shares: typing 0.65 (0.5-0.8), reading 0.25, phone 0.1
+    work.activity = u < 0.65 ? Activity::typing : u < 0.90 ? Activity::reading : Activity::phone;
+    left_s -= work.duration_s;
+    if (left_s <= 0.0) work.duration_s = until_next_s;
   }
-  draw_meetings(source, draw);
-  find_hosts(source, draw);
-  return draw;
+  return works;
 }
 
 std::vector<double> markov_rates(std::span<const double> shares, std::span<const double> stays) {
@@ -379,9 +361,23 @@ void draw_guests_meetings(const DaySource& source, std::size_t room, DayDraw& dr
 
 }  // namespace
 
-void draw_meetings(const DaySource& source, DayDraw& draw) {
+DayDraw draw_times(const DaySource& source) {
+  DayDraw draw;
+  draw.stays.resize(source.people.size());
+  if (!is_working_day(source.day)) return draw;
+  for (std::size_t i = 0; i < source.people.size(); ++i) {
+    const auto& person = source.people[i];
+    if (!person) continue;
+    Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
+    if (person->part == SchedulePart::cleaner)
+      draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
+    if (person->part != SchedulePart::staff) continue;
+    draw.stays[i] = draw_agent(source.schedule, person->role, stream);
+  }
   for (std::size_t room = 0; room < source.schedule.meetings.size(); ++room) draw_guests_meetings(source, room, draw);
   draw_staff_meetings(source, draw);
+  find_hosts(source, draw);
+  return draw;
 }
 
 }  // namespace pirsim::sim

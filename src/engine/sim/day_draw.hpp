@@ -70,8 +70,8 @@ struct DaySource {
 
 [[nodiscard]] DayDraw draw_times(const DaySource& source);
 
-/// One thing that somebody does at a desk, and for how long.
-[[nodiscard]] action::Work draw_desk_work(Stream& stream);
+/// What somebody does at a desk in so long, one thing after the other; the last goes on until the next action.
+[[nodiscard]] std::vector<action::Work> draw_desk_work(Stream& stream, double for_s);
 
 /// Share of time in each Place and mean stay. Ref: [ChenHongLuo2018].
 struct Habits {

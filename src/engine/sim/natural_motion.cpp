@@ -209,34 +209,6 @@ constexpr Repertoire lying{in_bed, lying_idly, {}, at_work};
 constexpr Repertoire lying_watching{in_bed_before_television, lying_idly, {}, while_absorbed};
 constexpr Repertoire lying_asleep{asleep_in_bed, asleep, {}, while_asleep};
 
-}  // namespace
-
-double StillPeriods::length_s(double z) const noexcept { return mean_s * std::exp(spread * (z - 0.5 * spread)); }
-
-/// A period is met in proportion to its length, anywhere in it.
-double StillPeriods::rest_s(double z, double v) const noexcept {
-  return v * mean_s * std::exp(spread * (z + 0.5 * spread));
-}
-
-const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, Talk talk) noexcept {
-  switch (bearing) {
-    case Bearing::walking:
-      return activity == Activity::phone ? walking_on_phone : walking;
-    case Bearing::standing:
-      if (talk == Talk::speaks) return standing_speaker;
-      return activity ? standing[static_cast<std::size_t>(*activity)] : standing_idly;
-    case Bearing::lying:
-      if (activity == Activity::sleeping) return lying_asleep;
-      return activity == Activity::watching_tv ? lying_watching : lying;
-    case Bearing::seated:
-      break;
-  }
-  if (talk == Talk::speaks) return seated_speaker;
-  return activity ? seated[static_cast<std::size_t>(*activity)] : seated_idly;
-}
-
-namespace {
-
 using body::Channel;
 using body::Stage;
 
@@ -307,7 +279,33 @@ double mean_s(std::span<const Act> acts) noexcept {
   return std::accumulate(acts.begin(), acts.end(), 0.0, add) / total_weight(acts);
 }
 
+constexpr double bout_s = 20.0;  // assumed (10-60): swinging and stillness take turns in stretches of this length
+
 }  // namespace
+
+double StillPeriods::length_s(double z) const noexcept { return mean_s * std::exp(spread * (z - 0.5 * spread)); }
+
+/// A period is met in proportion to its length, anywhere in it.
+double StillPeriods::rest_s(double z, double v) const noexcept {
+  return v * mean_s * std::exp(spread * (z + 0.5 * spread));
+}
+
+const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, Talk talk) noexcept {
+  switch (bearing) {
+    case Bearing::walking:
+      return activity == Activity::phone ? walking_on_phone : walking;
+    case Bearing::standing:
+      if (talk == Talk::speaks) return standing_speaker;
+      return activity ? standing[static_cast<std::size_t>(*activity)] : standing_idly;
+    case Bearing::lying:
+      if (activity == Activity::sleeping) return lying_asleep;
+      return activity == Activity::watching_tv ? lying_watching : lying;
+    case Bearing::seated:
+      break;
+  }
+  if (talk == Talk::speaks) return seated_speaker;
+  return activity ? seated[static_cast<std::size_t>(*activity)] : seated_idly;
+}
 
 NaturalMotion::NaturalMotion(std::uint64_t seed, std::uint32_t run, std::uint32_t person, int tick_rate_hz)
     : stream_({seed, run, person, Purpose::natural_motion}), tick_rate_hz_(tick_rate_hz) {
@@ -468,11 +466,6 @@ void NaturalMotion::tick(body::Motion& motion, std::optional<Activity> activity,
   if (phase_ != Phase::moving) begin_act();
   stroke(motion);
 }
-
-namespace {
-
-constexpr double bout_s = 20.0;  // assumed (10-60): swinging and stillness take turns in stretches of this length
-}  // namespace
 
 Restlessness::Restlessness(const PersonChanges& changes, std::uint64_t seed, std::uint32_t run, std::uint32_t person,
                            double tick_s)

@@ -19,14 +19,10 @@ void append_solids(const Actor& actor, std::vector<PosedShape>& solids) {
 std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::size_t sensor) {
   const RayBundle& bundle = model.rays();
   const std::vector<float> range = model.compiled().array().range(state.run_state().crowd.doors().steps());
-  const auto first_ray = [&](std::uint32_t cluster) {
-    return bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
-  };
   std::vector<PosedShape> solids;
   for (const Actor& actor : state.run_state().crowd.actors()) append_solids(actor, solids);
   std::vector<BeamSegment> beams;
-  for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]);
-       i < first_ray(bundle.sensor_clusters_begin[sensor + 1]); ++i) {
+  for (auto i = bundle.first_ray(sensor); i < bundle.first_ray(sensor + 1); ++i) {
     const Ray& ray = bundle.rays[i];
     float reach = range[i];
     bool sees_person = false;
@@ -45,6 +41,16 @@ namespace {
 
 // A power of two. Few at first, so that what a single run looks up stays in the cache.
 constexpr std::size_t fewest_buckets = 4096;
+
+/// By bytes: numbers that are equal but not the same may give another posture.
+bool is_same(const body::Outline& a, const body::Outline& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Most people are seen by few sensors.
+std::size_t usual_parts(const SensorArray& array) {
+  constexpr std::size_t most = 16;
+  const auto n_words = [](std::size_t n_bits) { return ZoneSet(n_bits).words().size(); };
+  return std::min(most, n_words(array.channels().n_zones()) + n_words(array.channels().n_channels()));
+}
 
 }  // namespace
 
@@ -147,13 +153,6 @@ void PostureIndex::forget_all() noexcept {
   std::ranges::fill(last_, Number{0});
   free_bucket_ = bucket_of(wanted_);
 }
-
-namespace {
-
-/// By bytes: numbers that are equal but not the same may give another posture.
-bool is_same(const body::Outline& a, const body::Outline& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-}  // namespace
 
 PowerMeter::PowerMeter(const SensorArray& array, TracerKind kind)
     : power_(array.analog()->power()),
@@ -271,17 +270,6 @@ void PowerMeter::follow(std::span<const rt::Moved> moved) {
     powers_[power_.receiver_of(ray)] += power(ray, after) - power(ray, before);
   }
 }
-
-namespace {
-
-/// Most people are seen by few sensors.
-std::size_t usual_parts(const SensorArray& array) {
-  constexpr std::size_t most = 16;
-  const auto n_words = [](std::size_t n_bits) { return ZoneSet(n_bits).words().size(); };
-  return std::min(most, n_words(array.channels().n_zones()) + n_words(array.channels().n_channels()));
-}
-
-}  // namespace
 
 Observer::Observer(const SensorArray& array, TracerKind kind, ZonesOf whose)
     : array_(array),

@@ -27,8 +27,6 @@
 namespace pirsim::sim {
 namespace {
 
-constexpr double until_next_s = 1e6;  ///< of an action that only the next one ends
-
 bool is_occupant(const PersonModel& person) {
   return person.spec.part && person.spec.part->part == SchedulePart::occupant;
 }
@@ -91,18 +89,6 @@ Places places_of(const TrialModel& trial, const SceneSpec& scene, const CountedP
   return places;
 }
 
-ScriptedAction timed(Action what, double at_s) {
-  ScriptedAction action;
-  action.what = std::move(what);
-  action.at_s = at_s;
-  return action;
-}
-ScriptedAction untimed(Action what) {
-  ScriptedAction action;
-  action.what = std::move(what);
-  return action;
-}
-
 /// Puts the visits of a run into a room.
 class Visits {
  public:
@@ -154,12 +140,12 @@ class Visits {
     const double free_s = free_s_[person];
     std::optional<double> moves_s;
     if (visit.comes_s == CountedVisit::from_the_beginning) {
-      actions.push_back(untimed(action::Appear{stand_of(visit.place, person), 0.0}));
+      actions.push_back({action::Appear{stand_of(visit.place, person), 0.0}});
     } else if (visit.comes_from == CountedVisit::Beyond::other_part) {
       moves_s = std::max(visit.comes_s - move_s(person, last_place_[person], visit.place), free_s);
     } else {
       const double at_s = visit.comes_s - crossings(person, in_by, visit.place).in_s;
-      actions.push_back(timed(action::Enter{doors[in_by]}, std::max(at_s, free_s)));
+      actions.push_back({action::Enter{doors[in_by]}, std::max(at_s, free_s)});
     }
     stay(visit, person, stream, moves_s, actions);
     last_place_[person] = visit.place;
@@ -171,25 +157,19 @@ class Visits {
     constexpr double turns_round_s = 1.0;  // assumed: of who is sent out again at once
     const double at_s = visit.goes_s - crossings(person, out_by, visit.place).out_s;
     free_s_[person] = std::max({at_s, visit.comes_s + turns_round_s, free_s});
-    actions.push_back(timed(action::Leave{doors[out_by]}, free_s_[person]));
+    actions.push_back({action::Leave{doors[out_by]}, free_s_[person]});
   }
 
-  /// What they do until something else is called for.
-  /// begins_s: when they set out for the place, if not at once.
+  /// What they do until something else is called for. begins_s: when they set out for the place, if not at once.
   void stay(const CountedVisit& visit, std::size_t person, Stream& stream, std::optional<double> begins_s,
             std::vector<ScriptedAction>& actions) const {
     for (Action& action : taking(visit.place, person)) {
-      actions.push_back(untimed(std::move(action)));
-      actions.back().at_s = std::exchange(begins_s, std::nullopt);
+      actions.push_back({std::move(action), std::exchange(begins_s, std::nullopt)});
     }
-    if (!places_.is_seat(visit.place)) return actions.push_back(untimed(action::Wait{until_next_s}));
+    if (!places_.is_seat(visit.place)) return actions.push_back({action::Wait{until_next_s}});
     const double end_s = std::min(visit.goes_s, trial_.duration_s.value_or(0.0));
-    for (double left_s = end_s - std::max(visit.comes_s, 0.0); left_s > 0.0;) {
-      action::Work work = draw_desk_work(stream);
-      left_s -= work.duration_s;
-      if (left_s <= 0.0) work.duration_s = until_next_s;
-      actions.push_back(untimed(work));
-    }
+    for (const action::Work& work : draw_desk_work(stream, end_s - std::max(visit.comes_s, 0.0)))
+      actions.push_back({work});
   }
 
   [[nodiscard]] std::vector<Action> taking(std::size_t place, std::size_t person) const {
@@ -226,10 +206,10 @@ class Visits {
   }
   [[nodiscard]] double rehearse_move(std::size_t person, std::size_t from, std::size_t to) const {
     double reached_s = to_settle_s + 5.0;  // assumed, of who doesn't get there alone (2-10)
-    std::vector<ScriptedAction> actions{untimed(action::Appear{stand_of(from, person), 0.0})};
+    std::vector<ScriptedAction> actions{{action::Appear{stand_of(from, person), 0.0}}};
     settle(from, person, actions);
     const std::size_t first = actions.size();
-    for (Action& action : taking(to, person)) actions.push_back(untimed(std::move(action)));
+    for (Action& action : taking(to, person)) actions.push_back({std::move(action)});
     actions[first].at_s = to_settle_s;
     bool is_there = false;
     try_out(person, std::move(actions), [&](const Actor& actor, double now_s) {
@@ -252,9 +232,9 @@ class Visits {
     const EntranceSpec& entrance = *std::ranges::find(study_.scene().entrances, id, &EntranceSpec::id);
     const double way_m = glm::distance(outside_of(entrance), stand_of(place, person));
     const double leaves_s = to_settle_s + way_m / slow_m_s;
-    std::vector<ScriptedAction> actions{untimed(action::Enter{id})};
+    std::vector<ScriptedAction> actions{{action::Enter{id}}};
     settle(place, person, actions);
-    actions.push_back(timed(action::Leave{id}, leaves_s));
+    actions.push_back({action::Leave{id}, leaves_s});
     Crossings found;
     bool was_inside = false;
     try_out(person, std::move(actions), [&](const Actor& actor, double now_s) {
@@ -269,9 +249,8 @@ class Visits {
   static constexpr double to_settle_s = 15.0;
   /// Takes the place and stays there until something else is called for.
   void settle(std::size_t place, std::size_t person, std::vector<ScriptedAction>& actions) const {
-    for (Action& action : taking(place, person)) actions.push_back(untimed(std::move(action)));
-    actions.push_back(
-        untimed(places_.is_seat(place) ? Action(action::Work{until_next_s}) : Action(action::Wait{until_next_s})));
+    for (Action& action : taking(place, person)) actions.push_back({std::move(action)});
+    actions.push_back({places_.is_seat(place) ? Action(action::Work{until_next_s}) : action::Wait{until_next_s}});
   }
   /// The person does it alone; told(actor, seconds) after every tick.
   template <typename Told>

@@ -39,6 +39,80 @@ bool leads_by(const DoorLeaf& leaf, const DoorUser& user) {
   return user.gait == DoorUser::Gait::led && leaf.distance_to_sweep_m(user.now) < walking_m;
 }
 
+using body::Stage;
+using PersonSolidity = Presence::Solidity;
+
+constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
+constexpr double squeeze_corner_m = 0.1;  ///< radius of their corners: little is cut off them
+constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
+constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
+constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
+constexpr double wish_after_s = 1.0;      ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
+constexpr double walked_on_m = 0.5;       ///< who has come so far isn't held up any more
+constexpr double passed_m = 0.8;          ///< who passes through others goes at least so far
+constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
+constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
+
+std::string text(const Vec2& place) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(2) << '(' << place.x << ", " << place.y << ") m";
+  return out.str();
+}
+
+constexpr double way_step_m = 0.05;
+constexpr double unlimited_m = std::numeric_limits<double>::infinity();
+
+using body::Stage;
+using PersonSolidity = Presence::Solidity;
+
+constexpr double wish_reaches_m = 3.0;  ///< assumed: who stands farther along a wished way isn't concerned yet
+constexpr double place_reach_m = 3.0;   ///< farther away nobody goes to wait
+constexpr double aside_most_s = 10.0;   ///< assumed: nobody waits aside for longer (tried 5-20)
+constexpr double get_up_after_s = 3.0;  ///< assumed: who is held up for so long asks sitters to get up
+constexpr double ask_every_s = 1.0;     ///< how often it is found out who bars the way
+constexpr double up_most_s = 40.0;      ///< assumed: nobody who got up waits for longer
+constexpr double past_m = 0.8;          ///< assumed: beyond the seat of who got up one is past it
+
+double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double reach_m) {
+  double nearest = glm::distance(point, way.front()), walked = 0.0;
+  for (std::size_t i = 0; i + 1 < way.size() && walked < reach_m; ++i) {
+    nearest = std::min(nearest, body::distance(point, way[i], way[i + 1]));
+    walked += glm::distance(way[i], way[i + 1]);
+  }
+  return nearest;
+}
+
+bool comes_near(const std::vector<Vec2>& way, const Stadium& trunk, double near_m) {
+  constexpr double step_m = 0.05;
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    const int n_steps = static_cast<int>(std::ceil(glm::distance(way[i], way[i + 1]) / step_m));
+    for (int k = 0; k <= n_steps; ++k) {
+      const double share = n_steps == 0 ? 0.0 : static_cast<double>(k) / n_steps;
+      if (distance(way[i] + share * (way[i + 1] - way[i]), trunk) < near_m) return true;
+    }
+  }
+  return false;
+}
+
+/// How far along the way its point next to this one is.
+double along(const std::vector<Vec2>& way, const Vec2& point) {
+  double nearest = glm::distance(point, way.front()), walked = 0.0, there = 0.0;
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    const Vec2 leg = way[i + 1] - way[i];
+    const double length = glm::length(leg);
+    const double away = body::distance(point, way[i], way[i + 1]);
+    if (away < nearest && length > 0.0) {
+      nearest = away;
+      there = walked + std::clamp(glm::dot(point - way[i], leg) / length, 0.0, length);
+    }
+    walked += length;
+  }
+  return there;
+}
+
 }  // namespace
 
 Doors::Doors(const CompiledStudy& study, std::uint32_t run)
@@ -117,33 +191,6 @@ std::int64_t Doors::still_until(const CompiledStudy& study, std::int64_t tick) c
   }
   return until;
 }
-
-namespace {
-
-using body::Stage;
-using PersonSolidity = Presence::Solidity;
-
-constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
-constexpr double squeeze_corner_m = 0.1;  ///< radius of their corners: little is cut off them
-constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
-constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
-constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
-constexpr double wish_after_s = 1.0;      ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
-constexpr double walked_on_m = 0.5;       ///< who has come so far isn't held up any more
-constexpr double passed_m = 0.8;          ///< who passes through others goes at least so far
-constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
-constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
-
-std::string text(const Vec2& place) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(2) << '(' << place.x << ", " << place.y << ") m";
-  return out.str();
-}
-
-}  // namespace
 
 Pedestrian::Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,
                        double heading)
@@ -485,13 +532,6 @@ void Pedestrian::advance(const Others& others, const DoorsSeen& doors, std::int6
 
 // How a pedestrian comes up to doors: they wait before what a leaf sweeps until it is open.
 
-namespace {
-
-constexpr double way_step_m = 0.05;
-constexpr double unlimited_m = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 /// Whoever stands nearer than the usual already comes no nearer; who stands in the way of the leaf doesn't set out.
 Pedestrian::WayToDoor Pedestrian::way_to_door(const DoorsSeen& doors, std::size_t door) const {
   const DoorLeaf& leaf = doors.leaves[door];
@@ -547,58 +587,6 @@ double Pedestrian::free_way_to_doors(const DoorsSeen& doors) {
 }
 
 // How a pedestrian makes way for others: on foot by stepping aside, on a chair by leaning forward or getting up.
-
-namespace {
-
-using body::Stage;
-using PersonSolidity = Presence::Solidity;
-
-constexpr double wish_reaches_m = 3.0;  ///< assumed: who stands farther along a wished way isn't concerned yet
-constexpr double place_reach_m = 3.0;   ///< farther away nobody goes to wait
-constexpr double aside_most_s = 10.0;   ///< assumed: nobody waits aside for longer (tried 5-20)
-constexpr double get_up_after_s = 3.0;  ///< assumed: who is held up for so long asks sitters to get up
-constexpr double ask_every_s = 1.0;     ///< how often it is found out who bars the way
-constexpr double up_most_s = 40.0;      ///< assumed: nobody who got up waits for longer
-constexpr double past_m = 0.8;          ///< assumed: beyond the seat of who got up one is past it
-
-double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double reach_m) {
-  double nearest = glm::distance(point, way.front()), walked = 0.0;
-  for (std::size_t i = 0; i + 1 < way.size() && walked < reach_m; ++i) {
-    nearest = std::min(nearest, body::distance(point, way[i], way[i + 1]));
-    walked += glm::distance(way[i], way[i + 1]);
-  }
-  return nearest;
-}
-
-bool comes_near(const std::vector<Vec2>& way, const Stadium& trunk, double near_m) {
-  constexpr double step_m = 0.05;
-  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-    const int n_steps = static_cast<int>(std::ceil(glm::distance(way[i], way[i + 1]) / step_m));
-    for (int k = 0; k <= n_steps; ++k) {
-      const double share = n_steps == 0 ? 0.0 : static_cast<double>(k) / n_steps;
-      if (distance(way[i] + share * (way[i + 1] - way[i]), trunk) < near_m) return true;
-    }
-  }
-  return false;
-}
-
-/// How far along the way its point next to this one is.
-double along(const std::vector<Vec2>& way, const Vec2& point) {
-  double nearest = glm::distance(point, way.front()), walked = 0.0, there = 0.0;
-  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-    const Vec2 leg = way[i + 1] - way[i];
-    const double length = glm::length(leg);
-    const double away = body::distance(point, way[i], way[i + 1]);
-    if (away < nearest && length > 0.0) {
-      nearest = away;
-      there = walked + std::clamp(glm::dot(point - way[i], leg) / length, 0.0, length);
-    }
-    walked += length;
-  }
-  return there;
-}
-
-}  // namespace
 
 bool Pedestrian::bars(const Presence& other, const Vec2& from, const Vec2& to) const {
   std::vector<body::Disc> discs;

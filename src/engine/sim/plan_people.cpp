@@ -46,139 +46,6 @@ double deepest_m(const body::Humanoid& person) {
 
 Vec3f level(const Vec2& direction) { return {static_cast<float>(direction.x), 0.0F, static_cast<float>(direction.y)}; }
 
-}  // namespace
-
-std::optional<SeatPlan> PlaceAccess::plan_of(const SeatSpec& seat) const {
-  const double floor_y = scene_.floor.height_m();
-  const Frame& frame = seat.world_from_seat;
-  if (body::unfit_height(person_.humanoid, {frame, floor_y, {}})) return std::nullopt;
-  SeatPlan plan{{frame, floor_y, table_height(seat, floor_y, room_)}};
-  const double radius_m = person_.humanoid.clearance_radius_m(), half_depth_m = person_.humanoid.half_depth_m();
-  plan.half_depth_m = radius_m;
-  if (find_place_behind(frame, plan, -body::fall_back_m(person_.humanoid, plan.place))) return plan;
-  plan.half_depth_m = half_depth_m;
-  if (find_place_before(frame, plan)) return plan;
-  // Where a table is near a wall nobody has the room of a walker: they squeeze in.
-  // Where a wall is right behind the chair they turn it and sit down from the side.
-  for (const double turn : {0.0, 0.5 * pi, -0.5 * pi}) {
-    plan.place.approach_turn = turn;
-    for (const double keep_m : {radius_m, half_depth_m}) {
-      plan.half_depth_m = keep_m;
-      if (find_place_behind(frame, plan, 1.0)) return plan;
-    }
-  }
-  return std::nullopt;
-}
-
-/// Calves at the edge; to the side a little, if something stands there.
-bool PlaceAccess::find_place_before(const Frame& seat, SeatPlan& plan) const {
-  const Vec2 facing = direction_of(heading_of(seat));
-  const double fall_back_m = body::fall_back_m(person_.humanoid, plan.place);
-  for (const double aside_m : {0.0, 0.1, -0.1, 0.2, -0.2}) {  // assumed: farther is before another seat
-    plan.stand_aside_m = aside_m;
-    for (double ahead_m = fall_back_m; ahead_m <= deepest_m(person_.humanoid); ahead_m += step_m) {
-      plan.stand_back_m = -ahead_m;
-      const Vec2 stand = plan.stand(seat);
-      if (!person_.can_stand(stand, facing, plan.half_depth_m) || !is_open_before(seat, ahead_m)) continue;
-      if (!can_go_to_(stand)) continue;
-      plan.place.feet_ahead_m = ahead_m;
-      return true;
-    }
-  }
-  plan.stand_aside_m = 0.0;
-  return false;
-}
-
-/// Up to so far behind the seat, on its axis; that is before it where farthest_m is negative.
-bool PlaceAccess::find_place_behind(const Frame& seat, SeatPlan& plan, double farthest_m) const {
-  const double fall_back_m = body::fall_back_m(person_.humanoid, plan.place);
-  const Vec2 facing = direction_of(heading_of(seat) + plan.place.approach_turn);
-  for (double back_m = -fall_back_m; back_m <= farthest_m; back_m += step_m) {
-    plan.stand_back_m = back_m;
-    const Vec2 stand = plan.stand(seat);
-    if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
-    if (!has_room_behind(seat, facing, back_m + fall_back_m, plan.half_depth_m)) continue;
-    if (can_go_to_(stand)) return true;
-  }
-  return false;
-}
-
-/// Nothing stands between the seat and who comes to sit down, at the height of the pelvis and of the chest.
-bool PlaceAccess::is_open_before(const Frame& seat, double ahead_m) const {
-  constexpr double chest_m = 0.35;  // assumed (0.3-0.4): above the pelvis
-  const Vec3f facing = level(direction_of(heading_of(seat)));
-  return std::ranges::all_of(std::array{0.0, chest_m}, [&](double up_m) {
-    const Ray ahead{Vec3f(seat.origin + Vec3(0, up_m, 0)), facing};
-    return !room_.first_hit(ahead, static_cast<float>(ahead_m)).has_value();
-  });
-}
-
-/// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
-bool PlaceAccess::has_room_behind(const Frame& seat, const Vec2& facing, double back_m, double half_depth_m) const {
-  constexpr double body_and_chair_m = 0.15;  // assumed, half a body and a chair's back (tried 0.1-0.25)
-  const double keep_m = std::min(body_and_chair_m, half_depth_m);
-  const Ray behind{Vec3f(seat.origin), -level(facing)};
-  return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
-}
-
-std::string PlaceAccess::why_no_place(const SeatSpec& seat) const {
-  constexpr double fine_m = 0.01, farthest_m = 1.5;
-  const body::Humanoid& who = person_.humanoid;
-  const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
-  const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
-  const double before_m = body::fall_back_m(who, {seat.world_from_seat, scene_.floor.height_m(), {}});
-  for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += fine_m) {
-    const Vec2 stand = pelvis + ahead_m * facing;
-    if (!person_.can_stand(stand, facing, who.half_depth_m()) || !can_go_to_(stand)) continue;
-    const double too_far_m = ahead_m + fine_m - deepest_m(who);  // to be sure of it, whatever the steps of the search
-    if (too_far_m <= 0.0 || !is_open_before(seat.world_from_seat, ahead_m)) break;
-    return "its point lies " + fixed(ahead_m - who.half_depth_m(), 2) + " m behind the edge of '" +
-           scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
-           "', farther than thighs reach, and there is no place behind or beside it either; move the point " +
-           fixed(std::ceil(too_far_m / fine_m) * fine_m, 2) + " m forward, where one sits nearer to the edge";
-  }
-  return no_place;
-}
-
-/// out_m: from the place's point, the way one faces who sits there.
-body::SeatPlace PlaceAccess::edge_of(const PlaceSpec& place, double heading, double out_m) const {
-  const Vec2 out = out_m * direction_of(heading);
-  const Vec3 up(out.x, body::edge_height_m(person_.humanoid), out.y);
-  return {{rotation_from_heading(heading), place.world_from_place.origin + up}, scene_.floor.height_m(), {}};
-}
-
-std::optional<LyingPlan> PlaceAccess::plan_to_lie(const PlaceSpec& place) const {
-  constexpr double farthest_m = 1.6;  // assumed: the far half of a wide bed, and room to stand
-  const double facing_feet = heading_of(place.world_from_place);
-  const body::SeatPlace middle = edge_of(place, facing_feet, 0.0);
-  if (body::unfit_height(person_.humanoid, middle)) return std::nullopt;
-  const double fall_back_m = body::fall_back_m(person_.humanoid, middle), keep_m = person_.humanoid.half_depth_m();
-  for (const std::array sides{std::array{0.5 * pi, -0.5 * pi}, std::array{0.0, 0.0}}; const auto& turns : sides) {
-    for (double ahead_m = fall_back_m; ahead_m <= farthest_m; ahead_m += step_m) {
-      for (const double turn : turns) {
-        LyingPlan plan;
-        plan.edge.place = edge_of(place, facing_feet + turn, ahead_m - fall_back_m);
-        plan.edge.stand_back_m = -fall_back_m;
-        plan.edge.half_depth_m = keep_m;
-        const Frame& edge = plan.edge.place.world_from_seat;
-        const Vec2 stand = plan.edge.stand(edge);
-        if (!person_.can_stand(stand, direction_of(heading_of(edge)), keep_m)) continue;
-        if (!is_open_before(edge, fall_back_m) || !can_go_to_(stand)) continue;
-        plan.bed = {place.world_from_place, plan.edge.place};
-        return plan;
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-std::string PlaceAccess::why_no_edge(const PlaceSpec& place) const {
-  if (const auto unfit = body::unfit_height(person_.humanoid, edge_of(place, 0.0, 0.0))) return *unfit;
-  return "no path leads to a free place to stand at either side of it or at its foot";
-}
-
-namespace {
-
 /// Walks through one person's actions in thought: where are they, where must they get to? Where that can't be done
 /// nobody knows where they go on, and what they do until they come in anew isn't judged.
 class Rehearsal {
@@ -545,28 +412,6 @@ TriMesh leaf_with_room(const DoorLeaf& leaf) {
   return mesh;
 }
 
-}  // namespace
-
-std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
-                                    const CompiledStudy* like) {
-  const SceneSpec& scene = study.scene();
-  check_actions(scene, trials);
-  require_limit(scene, trials);
-  const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
-  const bool has_screens = std::ranges::any_of(scene.meshes, is_screen);
-  if (!has_screens && scene.doors.empty()) {
-    return plan_among_solids(study, trials, scene, study.array().room(), floors_of(like, scene));
-  }
-  SceneSpec solid = scene;
-  std::erase_if(solid.meshes, is_screen);
-  const rt::Room room(solid.meshes);
-  // Ways lead through shut doors and round open leaves, so that one is never where somebody goes.
-  for (const DoorLeaf& leaf : study.array().leaves()) solid.meshes.push_back(leaf_with_room(leaf));
-  return plan_among_solids(study, trials, solid, room, floors_of(like, scene));
-}
-
-namespace {
-
 // Structured bindings name every field, so that a new one doesn't compile until it stands here.
 auto fields(const FidgetSpec& fidgeting) {
   const auto& [rate_per_s, tilt_deg, turn_deg, timing] = fidgeting;
@@ -634,34 +479,6 @@ bool same_trial(const TrialModel& planned, const TrialInForce& trial, double amb
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });
 }
-
-}  // namespace
-
-bool same_meshes(const SceneSpec& a, const SceneSpec& b) {
-  return std::ranges::equal(a.meshes, b.meshes, same<TriMesh>);
-}
-
-bool same_ground(const SceneSpec& a, const SceneSpec& b) {
-  return a.floor == b.floor && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
-         std::ranges::equal(a.doors, b.doors, same<DoorSpec>) &&
-         std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
-}
-
-bool same_people(const CompiledStudy& like, const CompiledStudy& study, const std::vector<TrialInForce>& trials) {
-  const auto same_sizes = [](const TrialSpec& a, const TrialSpec& b) {
-    return std::ranges::equal(a.people, b.people, same_size);
-  };
-  const SensingInForce &a = like.sensing(), &b = study.sensing();
-  return like.seed() == study.seed() && clock(a) == clock(b) && same_ground(like.scene(), study.scene()) &&
-         std::ranges::equal(like.scene().seats, study.scene().seats, same<SeatSpec>) &&
-         std::ranges::equal(like.scene().places, study.scene().places, same<PlaceSpec>) &&
-         std::ranges::equal(like.script_given().trials, study.script_given().trials, same_sizes) &&
-         std::ranges::equal(like.trials(), trials, [&](const TrialModel& planned, const TrialInForce& trial) {
-           return same_trial(planned, trial, b.ambient_c);
-         });
-}
-
-namespace {
 
 using Course = ActionFacts::Course;
 using Needs = ActionFacts::Needs;
@@ -763,6 +580,177 @@ class Check {
 };
 
 }  // namespace
+
+std::optional<SeatPlan> PlaceAccess::plan_of(const SeatSpec& seat) const {
+  const double floor_y = scene_.floor.height_m();
+  const Frame& frame = seat.world_from_seat;
+  if (body::unfit_height(person_.humanoid, {frame, floor_y, {}})) return std::nullopt;
+  SeatPlan plan{{frame, floor_y, table_height(seat, floor_y, room_)}};
+  const double radius_m = person_.humanoid.clearance_radius_m(), half_depth_m = person_.humanoid.half_depth_m();
+  plan.half_depth_m = radius_m;
+  if (find_place_behind(frame, plan, -body::fall_back_m(person_.humanoid, plan.place))) return plan;
+  plan.half_depth_m = half_depth_m;
+  if (find_place_before(frame, plan)) return plan;
+  // Where a table is near a wall nobody has the room of a walker: they squeeze in.
+  // Where a wall is right behind the chair they turn it and sit down from the side.
+  for (const double turn : {0.0, 0.5 * pi, -0.5 * pi}) {
+    plan.place.approach_turn = turn;
+    for (const double keep_m : {radius_m, half_depth_m}) {
+      plan.half_depth_m = keep_m;
+      if (find_place_behind(frame, plan, 1.0)) return plan;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Calves at the edge; to the side a little, if something stands there.
+bool PlaceAccess::find_place_before(const Frame& seat, SeatPlan& plan) const {
+  const Vec2 facing = direction_of(heading_of(seat));
+  const double fall_back_m = body::fall_back_m(person_.humanoid, plan.place);
+  for (const double aside_m : {0.0, 0.1, -0.1, 0.2, -0.2}) {  // assumed: farther is before another seat
+    plan.stand_aside_m = aside_m;
+    for (double ahead_m = fall_back_m; ahead_m <= deepest_m(person_.humanoid); ahead_m += step_m) {
+      plan.stand_back_m = -ahead_m;
+      const Vec2 stand = plan.stand(seat);
+      if (!person_.can_stand(stand, facing, plan.half_depth_m) || !is_open_before(seat, ahead_m)) continue;
+      if (!can_go_to_(stand)) continue;
+      plan.place.feet_ahead_m = ahead_m;
+      return true;
+    }
+  }
+  plan.stand_aside_m = 0.0;
+  return false;
+}
+
+/// Up to so far behind the seat, on its axis; that is before it where farthest_m is negative.
+bool PlaceAccess::find_place_behind(const Frame& seat, SeatPlan& plan, double farthest_m) const {
+  const double fall_back_m = body::fall_back_m(person_.humanoid, plan.place);
+  const Vec2 facing = direction_of(heading_of(seat) + plan.place.approach_turn);
+  for (double back_m = -fall_back_m; back_m <= farthest_m; back_m += step_m) {
+    plan.stand_back_m = back_m;
+    const Vec2 stand = plan.stand(seat);
+    if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
+    if (!has_room_behind(seat, facing, back_m + fall_back_m, plan.half_depth_m)) continue;
+    if (can_go_to_(stand)) return true;
+  }
+  return false;
+}
+
+/// Nothing stands between the seat and who comes to sit down, at the height of the pelvis and of the chest.
+bool PlaceAccess::is_open_before(const Frame& seat, double ahead_m) const {
+  constexpr double chest_m = 0.35;  // assumed (0.3-0.4): above the pelvis
+  const Vec3f facing = level(direction_of(heading_of(seat)));
+  return std::ranges::all_of(std::array{0.0, chest_m}, [&](double up_m) {
+    const Ray ahead{Vec3f(seat.origin + Vec3(0, up_m, 0)), facing};
+    return !room_.first_hit(ahead, static_cast<float>(ahead_m)).has_value();
+  });
+}
+
+/// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
+bool PlaceAccess::has_room_behind(const Frame& seat, const Vec2& facing, double back_m, double half_depth_m) const {
+  constexpr double body_and_chair_m = 0.15;  // assumed, half a body and a chair's back (tried 0.1-0.25)
+  const double keep_m = std::min(body_and_chair_m, half_depth_m);
+  const Ray behind{Vec3f(seat.origin), -level(facing)};
+  return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
+}
+
+std::string PlaceAccess::why_no_place(const SeatSpec& seat) const {
+  constexpr double fine_m = 0.01, farthest_m = 1.5;
+  const body::Humanoid& who = person_.humanoid;
+  const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
+  const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
+  const double before_m = body::fall_back_m(who, {seat.world_from_seat, scene_.floor.height_m(), {}});
+  for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += fine_m) {
+    const Vec2 stand = pelvis + ahead_m * facing;
+    if (!person_.can_stand(stand, facing, who.half_depth_m()) || !can_go_to_(stand)) continue;
+    const double too_far_m = ahead_m + fine_m - deepest_m(who);  // to be sure of it, whatever the steps of the search
+    if (too_far_m <= 0.0 || !is_open_before(seat.world_from_seat, ahead_m)) break;
+    return "its point lies " + fixed(ahead_m - who.half_depth_m(), 2) + " m behind the edge of '" +
+           scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
+           "', farther than thighs reach, and there is no place behind or beside it either; move the point " +
+           fixed(std::ceil(too_far_m / fine_m) * fine_m, 2) + " m forward, where one sits nearer to the edge";
+  }
+  return no_place;
+}
+
+/// out_m: from the place's point, the way one faces who sits there.
+body::SeatPlace PlaceAccess::edge_of(const PlaceSpec& place, double heading, double out_m) const {
+  const Vec2 out = out_m * direction_of(heading);
+  const Vec3 up(out.x, body::edge_height_m(person_.humanoid), out.y);
+  return {{rotation_from_heading(heading), place.world_from_place.origin + up}, scene_.floor.height_m(), {}};
+}
+
+std::optional<LyingPlan> PlaceAccess::plan_to_lie(const PlaceSpec& place) const {
+  constexpr double farthest_m = 1.6;  // assumed: the far half of a wide bed, and room to stand
+  const double facing_feet = heading_of(place.world_from_place);
+  const body::SeatPlace middle = edge_of(place, facing_feet, 0.0);
+  if (body::unfit_height(person_.humanoid, middle)) return std::nullopt;
+  const double fall_back_m = body::fall_back_m(person_.humanoid, middle), keep_m = person_.humanoid.half_depth_m();
+  for (const std::array sides{std::array{0.5 * pi, -0.5 * pi}, std::array{0.0, 0.0}}; const auto& turns : sides) {
+    for (double ahead_m = fall_back_m; ahead_m <= farthest_m; ahead_m += step_m) {
+      for (const double turn : turns) {
+        LyingPlan plan;
+        plan.edge.place = edge_of(place, facing_feet + turn, ahead_m - fall_back_m);
+        plan.edge.stand_back_m = -fall_back_m;
+        plan.edge.half_depth_m = keep_m;
+        const Frame& edge = plan.edge.place.world_from_seat;
+        const Vec2 stand = plan.edge.stand(edge);
+        if (!person_.can_stand(stand, direction_of(heading_of(edge)), keep_m)) continue;
+        if (!is_open_before(edge, fall_back_m) || !can_go_to_(stand)) continue;
+        plan.bed = {place.world_from_place, plan.edge.place};
+        return plan;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string PlaceAccess::why_no_edge(const PlaceSpec& place) const {
+  if (const auto unfit = body::unfit_height(person_.humanoid, edge_of(place, 0.0, 0.0))) return *unfit;
+  return "no path leads to a free place to stand at either side of it or at its foot";
+}
+
+std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
+                                    const CompiledStudy* like) {
+  const SceneSpec& scene = study.scene();
+  check_actions(scene, trials);
+  require_limit(scene, trials);
+  const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
+  const bool has_screens = std::ranges::any_of(scene.meshes, is_screen);
+  if (!has_screens && scene.doors.empty()) {
+    return plan_among_solids(study, trials, scene, study.array().room(), floors_of(like, scene));
+  }
+  SceneSpec solid = scene;
+  std::erase_if(solid.meshes, is_screen);
+  const rt::Room room(solid.meshes);
+  // Ways lead through shut doors and round open leaves, so that one is never where somebody goes.
+  for (const DoorLeaf& leaf : study.array().leaves()) solid.meshes.push_back(leaf_with_room(leaf));
+  return plan_among_solids(study, trials, solid, room, floors_of(like, scene));
+}
+
+bool same_meshes(const SceneSpec& a, const SceneSpec& b) {
+  return std::ranges::equal(a.meshes, b.meshes, same<TriMesh>);
+}
+
+bool same_ground(const SceneSpec& a, const SceneSpec& b) {
+  return a.floor == b.floor && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
+         std::ranges::equal(a.doors, b.doors, same<DoorSpec>) &&
+         std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
+}
+
+bool same_people(const CompiledStudy& like, const CompiledStudy& study, const std::vector<TrialInForce>& trials) {
+  const auto same_sizes = [](const TrialSpec& a, const TrialSpec& b) {
+    return std::ranges::equal(a.people, b.people, same_size);
+  };
+  const SensingInForce &a = like.sensing(), &b = study.sensing();
+  return like.seed() == study.seed() && clock(a) == clock(b) && same_ground(like.scene(), study.scene()) &&
+         std::ranges::equal(like.scene().seats, study.scene().seats, same<SeatSpec>) &&
+         std::ranges::equal(like.scene().places, study.scene().places, same<PlaceSpec>) &&
+         std::ranges::equal(like.script_given().trials, study.script_given().trials, same_sizes) &&
+         std::ranges::equal(like.trials(), trials, [&](const TrialModel& planned, const TrialInForce& trial) {
+           return same_trial(planned, trial, b.ambient_c);
+         });
+}
 
 void check_actions(const SceneSpec& scene, const std::vector<TrialInForce>& trials) {
   Diagnostics diagnostics;

@@ -35,8 +35,7 @@ Recording nothing_shown(const SensorArray& array) {
 }
 
 NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPool& observers) {
-  NumberedRun recorded{nothing_shown(study.array()),
-                       {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}};
+  NumberedRun recorded{nothing_shown(study.array()), begun_run(study, run)};
   RecordedRun& track = recorded.track;
   MomentNumbering numbering(recorded.own, study.array().channels().n_zones());
   RunState state(study, run);
@@ -88,9 +87,7 @@ std::string optics_of(const CompiledStudy& study) {
   for (std::size_t sensor = 0; sensor < zones.n_sensors(); ++sensor) {
     digest.add(array.is_analog(sensor) ? "analog" : "zones");
     if (array.is_analog(sensor)) continue;
-    const std::size_t first = zones.cluster_zones_begin[zones.sensor_clusters_begin[sensor]];
-    const std::size_t last = zones.cluster_zones_begin[zones.sensor_clusters_begin[sensor + 1]];
-    for (std::size_t zone = first; zone < last; ++zone) {
+    for (std::size_t zone = zones.first_zone(sensor); zone < zones.first_zone(sensor + 1); ++zone) {
       const std::size_t begin = zones.zone_rays_begin[zone], n = zones.zone_rays_begin[zone + 1] - begin;
       digest.add(std::to_string(n));
       digest.add(bytes(std::span(zones.rays).subspan(begin, n)));
@@ -154,9 +151,8 @@ class ReplayedOptics final : public DetectorLogic {
     exposure.zones = recording_->zones(number);
     study_.array().expose(exposure);
     if (exposure.powers.empty()) return;
-    auto to = exposure.powers.begin();
-    for (std::size_t s = 0; s < recording_->n_sensors; ++s)
-      to = std::ranges::copy(recording_->powers_of(number, s), to).out;
+    exposure.powers.clear();
+    add_powers(*recording_, number, exposure.powers);
   }
 
   const CompiledStudy& study_;
@@ -166,7 +162,52 @@ class ReplayedOptics final : public DetectorLogic {
   Exposure before_, after_;    ///< of the last tick; scratch
 };
 
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) noexcept {
+  hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+  return hash ^ (hash >> 32U);
+}
+
+/// As `sensing` reads rows from triggers.
+RunResult replay_as(const SensingSpec& sensing, const Recording& recording, std::size_t index, DetectorLogic& detector,
+                    std::uint64_t seed, const effects::Pipeline& stages) {
+  const RecordedRun& track = recording.runs[index];
+  if (!goes_as_far_as(track, sensing, stages)) {
+    throw Error(ErrorCode::usage,
+                "clock_lag looks further ahead than was recorded: compile a model with it and record that");
+  }
+  RunResult result = track.rows;
+  Logger logger(stages, sensing, recording.n_sensors);
+  logger.begin_run(seed, result.run);
+  detector.begin_run(seed, result.run);
+  std::vector<std::uint8_t> triggers(recording.n_sensors);
+  auto left = track.seats_left.begin();
+  std::uint32_t before = track.rest;
+  const auto sense = [&](std::int64_t tick) {
+    const std::uint32_t after = track.moments[static_cast<std::size_t>(tick - 1)];
+    std::ranges::fill(triggers, std::uint8_t{0});
+    detector.tick(before, after, triggers);
+    before = after;
+    for (; left != track.seats_left.end() && left->tick == tick; ++left) logger.seat_left(left->seat);
+  };
+  for (Sample& sample : result.samples) {
+    for (int i = 0; i < sensing.ticks_per_window; ++i) logger.observe_tick(triggers, sense);
+    logger.complete(sample);
+  }
+  return result;
+}
+
 }  // namespace
+
+RecordedRun begun_run(const CompiledStudy& study, std::uint32_t run) {
+  return {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}};
+}
+
+void add_powers(const Recording& recording, std::uint32_t moment, std::vector<PowerSteps>& powers) {
+  for (std::size_t sensor = 0; sensor < recording.n_sensors && !recording.moments.empty(); ++sensor) {
+    const auto row = recording.powers_of(moment, sensor);
+    powers.insert(powers.end(), row.begin(), row.end());
+  }
+}
 
 Recording empty_recording(const CompiledStudy& study) {
   Recording recording = nothing_shown(study.array());
@@ -174,15 +215,6 @@ Recording empty_recording(const CompiledStudy& study) {
   recording.optics = optics_of(study);
   return recording;
 }
-
-namespace {
-
-std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) noexcept {
-  hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
-  return hash ^ (hash >> 32U);
-}
-
-}  // namespace
 
 MomentNumbering::MomentNumbering(Recording& recording, std::size_t n_zones)
     : recording_(recording), n_zones_(n_zones), rows_(recording.n_sensors) {
@@ -250,39 +282,6 @@ bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing, const 
   return static_cast<std::int64_t>(track.moments.size()) >= stages.heard_by(last_row);
 }
 
-namespace {
-
-/// As `sensing` reads rows from triggers.
-RunResult replay_as(const SensingSpec& sensing, const Recording& recording, std::size_t index, DetectorLogic& detector,
-                    std::uint64_t seed, const effects::Pipeline& stages) {
-  const RecordedRun& track = recording.runs[index];
-  if (!goes_as_far_as(track, sensing, stages)) {
-    throw Error(ErrorCode::usage,
-                "clock_lag looks further ahead than was recorded: compile a model with it and record that");
-  }
-  RunResult result = track.rows;
-  Logger logger(stages, sensing, recording.n_sensors);
-  logger.begin_run(seed, result.run);
-  detector.begin_run(seed, result.run);
-  std::vector<std::uint8_t> triggers(recording.n_sensors);
-  auto left = track.seats_left.begin();
-  std::uint32_t before = track.rest;
-  const auto sense = [&](std::int64_t tick) {
-    const std::uint32_t after = track.moments[static_cast<std::size_t>(tick - 1)];
-    std::ranges::fill(triggers, std::uint8_t{0});
-    detector.tick(before, after, triggers);
-    before = after;
-    for (; left != track.seats_left.end() && left->tick == tick; ++left) logger.seat_left(left->seat);
-  };
-  for (Sample& sample : result.samples) {
-    for (int i = 0; i < sensing.ticks_per_window; ++i) logger.observe_tick(triggers, sense);
-    logger.complete(sample);
-  }
-  return result;
-}
-
-}  // namespace
-
 RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
                  const effects::Pipeline& stages) {
   return replay_as(recording.sensing, recording, index, detector, seed, stages);
@@ -304,10 +303,7 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
         std::vector<sim::PowerSteps> powers;
         for (std::uint32_t i = 0; i < own.n_moments(); ++i) {
           powers.clear();
-          for (std::size_t sensor = 0; sensor < own.n_sensors && !own.moments.empty(); ++sensor) {
-            const auto row = own.powers_of(i, sensor);
-            powers.insert(powers.end(), row.begin(), row.end());
-          }
+          sim::add_powers(own, i, powers);
           renumbered.push_back(numbering.number(own.zones(i).words(), powers));
         }
         recorded.track.rest = renumbered[track.rest];

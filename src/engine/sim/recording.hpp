@@ -32,6 +32,10 @@ namespace pirsim::sim {
 
 /// Without runs yet.
 [[nodiscard]] Recording empty_recording(const CompiledStudy& study);
+/// Of a run of which nothing has been recorded.
+[[nodiscard]] RecordedRun begun_run(const CompiledStudy& study, std::uint32_t run);
+/// Appends what all receivers got at a moment; nothing without analog sensors.
+void add_powers(const Recording& recording, std::uint32_t moment, std::vector<PowerSteps>& powers);
 
 /// Hands out numbers 0, 1, 2, ... to things that somebody else keeps.
 class Numbering {

@@ -21,6 +21,7 @@
 // What people do, apart from what any sensor sees of it.
 
 namespace pirsim::sim {
+namespace {
 
 /// One run.
 struct PeopleTrack {
@@ -33,10 +34,32 @@ struct PeopleTrack {
 class Postures {
  public:
   /// As far as the study's stages look ahead of the last row.
-  [[nodiscard]] PeopleTrack follow(const CompiledStudy& study, std::uint32_t run);
+  [[nodiscard]] PeopleTrack follow(const CompiledStudy& study, std::uint32_t run) {
+    RunState state(study, run);
+    const std::vector<Actor>& actors = state.crowd.actors();
+    PeopleTrack track{begun_run(study, run), 0, actors.size(), {}};
+    std::vector<std::uint64_t> figures;
+    for (const Actor& actor : actors) figures.push_back(number_of(actor.person()));
+    index_.make_room_for(actors.size());
+    const auto note_postures = [&] {
+      for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, figures[i], actors[i]));
+    };
+    note_postures();
+    for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
+      if (move_tick(study, state) && !end) track.rows.rows.samples.push_back(state.sample);
+      if (state.finished && !end) end = study.stages().heard_by(state.tick);
+      for (const std::size_t seat : state.crowd.seats_left()) track.rows.seats_left.push_back({state.tick, seat});
+      note_postures();
+    }
+    track.n_ticks = static_cast<std::size_t>(state.tick);
+    return track;
+  }
   [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
   /// Forgets all but the first n.
-  void shrink(std::size_t n) noexcept;
+  void shrink(std::size_t n) noexcept {
+    index_.shrink(n);
+    people_.resize(std::min(n, people_.size()));
+  }
   /// Who stood so first, counted from 0: postures of one person follow upon one another.
   [[nodiscard]] std::uint32_t person(PostureIndex::Number number) const noexcept { return people_[number - 1]; }
   /// Lives as long as this.
@@ -55,8 +78,22 @@ class Postures {
     body::Humanoid humanoid;
     BodyRadiance radiance;
   };
-  [[nodiscard]] std::uint64_t number_of(const PersonModel& person);
-  [[nodiscard]] PostureIndex::Number number_of(std::uint32_t person, std::uint64_t figure, const Actor& actor);
+
+  [[nodiscard]] std::uint64_t number_of(const PersonModel& person) {
+    const auto known = std::ranges::find_if(figures_, [&](const Figure& figure) {
+      return figure.humanoid == person.humanoid && figure.radiance == person.radiance;
+    });
+    if (known != figures_.end()) return static_cast<std::uint64_t>(known - figures_.begin());
+    figures_.push_back({person.humanoid, person.radiance});
+    return figures_.size() - 1;
+  }
+  [[nodiscard]] PostureIndex::Number number_of(std::uint32_t person, std::uint64_t figure, const Actor& actor) {
+    if (!actor.present()) return 0;
+    const PostureIndex::Number known = index_.find(person, figure, actor.motion().outline());
+    if (known != 0) return known;
+    people_.push_back(person);
+    return index_.remember(person);
+  }
 
   PostureIndex index_;
   std::vector<std::uint32_t> people_;  ///< (n_postures)
@@ -70,14 +107,62 @@ class Postures {
 class PosturePowers {
  public:
   /// left_out: (n_sensors) 1 for those whose rays aren't followed. study: with analog sensors; it outlives this.
-  PosturePowers(const CompiledStudy& study, std::span<const std::uint8_t> left_out);
+  PosturePowers(const CompiledStudy& study, std::span<const std::uint8_t> left_out)
+      : power_(study.array().analog()->power()),
+        powers_(power_.n_receivers(), 0),
+        n_hit_(power_.clipped().n_zones(), 0),
+        touched_(power_.clipped().n_zones()) {
+    const RayBundle& all = power_.clipped();
+    ZoneSet unasked(all.n_zones());
+    for (std::size_t sensor = 0; sensor < all.n_sensors(); ++sensor) {
+      if (left_out[sensor] != 0) unasked.insert(all.first_zone(sensor), all.first_zone(sensor + 1));
+    }
+    rated_ = without(power_.rays().bundle, unasked);
+    clipped_ = without(all, unasked);
+    for (std::size_t zone = 0; zone < all.n_zones(); ++zone) {
+      for (auto ray = all.zone_rays_begin[zone]; ray < all.zone_rays_begin[zone + 1] && !unasked.test(zone); ++ray) {
+        rays_.push_back(ray);
+        zone_of_.push_back(static_cast<std::uint32_t>(zone));
+      }
+    }
+    tracer_ = rt::make_tracer(study.tracer(), {&study.array().room(), &rated_, &clipped_});
+  }
+
   /// Of these people together, who hide one another. people: (n_people) 0: not there. powers: (n_receivers)
   /// overwritten; of sensors that are left out nothing.
-  void measure(const Postures& postures, std::span<const PostureIndex::Number> people, std::span<PowerSteps> powers);
+  void measure(const Postures& postures, std::span<const PostureIndex::Number> people, std::span<PowerSteps> powers) {
+    moved_.clear();
+    for (std::size_t i = 0; i < figures_.size(); ++i) {
+      const bool stays = i < people.size() && people[i] != 0 && figures_[i].figure == postures.figure(people[i]);
+      if (figures_[i].posture != 0 && !stays) moved_.push_back({i, {}, {}});
+    }
+    follow();
+    for (const rt::Moved& gone : moved_) figures_[gone.person].posture = 0;
+    moved_.clear();
+    if (figures_.size() < people.size()) figures_.resize(people.size());
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      Figure& figure = figures_[i];
+      if (people[i] == figure.posture) continue;
+      if (figure.posture == 0) {
+        figure.figure = postures.figure(people[i]);
+        figure.radiance = postures.radiance(people[i]);
+        figure.surfaces = surfaces_of(figure.radiance);
+      }
+      figure.posture = people[i];
+      moved_.push_back(
+          {i, figure.mannequin.pose(postures.humanoid(people[i]), postures.outline(people[i])), figure.surfaces});
+    }
+    follow();
+    std::ranges::copy(powers_, powers.begin());
+  }
   /// Zones of the power's rays that somebody was in then.
   [[nodiscard]] const ZoneSet& touched() const noexcept { return touched_; }
   /// The postures from n + 1 on have been forgotten: their numbers will stand for others.
-  void shrink(std::size_t n) noexcept;
+  void shrink(std::size_t n) noexcept {
+    for (Figure& figure : figures_) {
+      if (figure.posture > n) figure.posture = forgotten;
+    }
+  }
 
  private:
   static constexpr PostureIndex::Number forgotten = 0xFFFFFFFFU;
@@ -90,7 +175,17 @@ class PosturePowers {
     Mannequin mannequin{};
   };
 
-  void follow();
+  void follow() {
+    if (moved_.empty() || rays_.empty()) return;
+    tracer_->follow(moved_, changes_);
+    for (const auto& [ray, before, after] : changes_) {
+      const std::uint32_t of_study = rays_[ray];
+      powers_[power_.receiver_of(of_study)] += power(of_study, after) - power(of_study, before);
+      std::uint32_t& n = n_hit_[zone_of_[ray]];
+      if (before == rt::no_solid && n++ == 0) touched_.insert(zone_of_[ray]);
+      if (after == rt::no_solid && --n == 0) touched_.erase(zone_of_[ray]);
+    }
+  }
   [[nodiscard]] PowerSteps power(std::uint32_t ray, rt::SolidId solid) const noexcept {
     return solid == rt::no_solid ? 0 : power_.power(ray, figures_[solid.person].radiance[solid.solid]);
   }
@@ -118,9 +213,22 @@ class PostureSolids {
   using Number = PostureIndex::Number;
 
   /// Valid until the next call.
-  [[nodiscard]] std::span<const PosedShape> of(const Postures& postures, Number number);
+  [[nodiscard]] std::span<const PosedShape> of(const Postures& postures, Number number) {
+    if (number <= n_kept_) return {&kept_[(number - 1) * body::n_parts], body::n_parts};
+    const std::uint32_t person = postures.person(number);
+    if (mannequins_.size() <= person) mannequins_.resize(person + 1);
+    const auto solids = mannequins_[person].pose(postures.humanoid(number), postures.outline(number));
+    if (number == n_kept_ + 1 && number <= n_to_keep_) {
+      kept_.insert(kept_.end(), solids.begin(), solids.end());
+      ++n_kept_;
+    }
+    return solids;
+  }
   void keep() noexcept { n_to_keep_ = most_kept; }
-  void shrink(std::size_t n);
+  void shrink(std::size_t n) {
+    n_kept_ = std::min(n_kept_, n);
+    kept_.resize(n_kept_ * body::n_parts);
+  }
 
  private:
   static constexpr std::size_t most_kept = 32768;
@@ -138,28 +246,143 @@ struct InCommon {
   /// Of all sensors.
   bool everything = false;
 };
-[[nodiscard]] InCommon in_common(const CompiledStudy& first, const CompiledStudy& other);
+
+/// Of one sensor, in bundles of one shape.
+bool same_rays(const RayBundle& a, const RayBundle& b, std::size_t sensor) {
+  static_assert(sizeof(Ray) == 6 * sizeof(float));  // nothing but numbers: equal bytes are equal rays
+  const std::size_t begin = b.first_ray(sensor), n = b.first_ray(sensor + 1) - begin;
+  return std::memcmp(a.rays.data() + begin, b.rays.data() + begin, n * sizeof(Ray)) == 0 &&
+         std::memcmp(a.range.data() + begin, b.range.data() + begin, n * sizeof(float)) == 0;
+}
+
+bool same_shape(const RayBundle& a, const RayBundle& b) {
+  return a.zone_rays_begin == b.zone_rays_begin && a.cluster_zones_begin == b.cluster_zones_begin &&
+         a.sensor_clusters_begin == b.sensor_clusters_begin;
+}
+
+bool same_zones(const SensorArray& a, const SensorArray& b, std::size_t sensor) {
+  return same_shape(a.clipped(), b.clipped()) && same_rays(a.clipped(), b.clipped(), sensor) &&
+         same_rays(a.rated(), b.rated(), sensor);
+}
+
+bool same_power(const PowerModel& a, const PowerModel& b, std::size_t sensor) {
+  if (!same_shape(a.clipped(), b.clipped()) || a.receivers_begin() != b.receivers_begin()) return false;
+  if (!same_rays(a.clipped(), b.clipped(), sensor)) return false;
+  for (std::uint32_t ray = b.clipped().first_ray(sensor); ray < b.clipped().first_ray(sensor + 1); ++ray) {
+    if (a.receiver_of(ray) != b.receiver_of(ray) || a.background(ray) != b.background(ray) ||
+        a.rays().weights[ray] != b.rays().weights[ray]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+InCommon in_common(const CompiledStudy& first, const CompiledStudy& other) {
+  const SensorArray &a = first.array(), &b = other.array();
+  InCommon common{ZoneSet(b.clipped().n_zones()), std::vector<std::uint8_t>(b.n_sensors(), 0), true};
+  for (std::size_t sensor = 0; sensor < b.n_sensors(); ++sensor) {
+    bool is_same = a.n_sensors() == b.n_sensors() && a.is_analog(sensor) == b.is_analog(sensor);
+    if (b.is_analog(sensor)) {
+      is_same = is_same && same_power(a.analog()->power(), b.analog()->power(), sensor);
+      common.sensors[sensor] = is_same ? 1 : 0;
+    } else {
+      is_same = is_same && same_zones(a, b, sensor);
+      if (is_same) common.zones.insert(b.clipped().first_zone(sensor), b.clipped().first_zone(sensor + 1));
+    }
+    common.everything = common.everything && is_same;
+  }
+  return common;
+}
+
+InCommon nothing_in_common(const SensorArray& array) {
+  return {ZoneSet(array.clipped().n_zones()), std::vector<std::uint8_t>(array.n_sensors(), 0), false};
+}
+
+using Number = PostureIndex::Number;
 
 /// What the rays of one study see of postures, as far as anybody asked.
 class PostureSight {
  public:
   using Number = PostureIndex::Number;
 
-  explicit PostureSight(const CompiledStudy& study);
   /// Asks `other` about what looks the same in both; it may be null if nothing does.
-  PostureSight(const CompiledStudy& study, const InCommon& common, PostureSight* other);
+  PostureSight(const CompiledStudy& study, const InCommon& common, PostureSight* other)
+      : study_(study),
+        common_(common),
+        other_(other),
+        zones_(common.zones.size()),
+        n_zone_words_(zones_.words().size()),
+        n_words_(n_zone_words_),
+        known_(1, 1) {
+    const SensorArray& array = study.array();
+    ZoneSet unasked = common.zones;  // and those of analog sensors
+    for (std::size_t i = 0; i < array.n_sensors(); ++i) {
+      if (array.is_analog(i)) unasked.insert(array.clipped().first_zone(i), array.clipped().first_zone(i + 1));
+    }
+    rated_ = without(array.rated(), unasked);
+    clipped_ = without(array.clipped(), unasked);
+    if (!clipped_.rays.empty()) tracer_ = rt::make_tracer(study.tracer(), {&array.room(), &rated_, &clipped_});
+    if (array.analog() != nullptr) {
+      const PowerModel& power = array.analog()->power();
+      for (std::size_t i = 0; i < array.n_sensors(); ++i) {
+        Analog& analog = analog_.emplace_back(
+            Analog{power.receivers_begin()[i], power.receivers_begin()[i + 1], ZoneSet(power.clipped().n_zones())});
+        analog.zones.insert(power.clipped().first_zone(i), power.clipped().first_zone(i + 1));
+      }
+      n_touched_words_ = ZoneSet(power.clipped().n_zones()).words().size();
+      powers_.resize(power.n_receivers());
+      together_.resize(power.n_receivers());
+      n_words_ += n_touched_words_ + powers_.size();
+    }
+    rows_.resize(n_words_, 0);
+  }
 
   /// Of one person alone.
   [[nodiscard]] std::span<const ZoneSet::Word> zones(const Postures& postures, PostureSolids& solids, Number number) {
     return row(postures, solids, number).first(n_zone_words_);
   }
-  [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, PostureSolids& solids, Number number);
+  [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, PostureSolids& solids, Number number) {
+    if (analog_.empty()) return {};
+    const std::span<const Word> words = row(postures, solids, number).subspan(n_zone_words_ + n_touched_words_);
+    std::ranges::transform(words, powers_.begin(), [](Word word) { return std::bit_cast<PowerSteps>(word); });
+    return powers_;
+  }
   /// Of several people, who hide one another; nothing without analog sensors. Where the other study's people are the
   /// same at that moment, `there` has what its sensors received.
   [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, PostureSolids& solids,
-                                                   std::span<const Number> people, std::span<const PowerSteps> there);
+                                                   std::span<const Number> people, std::span<const PowerSteps> there) {
+    if (analog_.empty()) return {};
+    for (const Number number : people) (void)row(postures, solids, number);  // uses powers_
+    std::ranges::fill(powers_, 0);
+    const std::size_t first_power = n_zone_words_ + n_touched_words_;
+    for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
+      const Analog& analog = analog_[sensor];
+      if (analog.begin == analog.end) continue;
+      if (common_.sensors[sensor] != 0 && !there.empty()) {
+        for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] = there[i];
+      } else if (!apart(postures, solids, people, analog.zones)) {
+        measure_together(postures, people, sensor, powers_);
+      } else {
+        for (const Number number : people) {
+          const std::span<const Word> words = row(postures, solids, number).subspan(first_power);
+          for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] += std::bit_cast<PowerSteps>(words[i]);
+        }
+      }
+    }
+    return powers_;
+  }
   [[nodiscard]] std::size_t n_zones() const noexcept { return zones_.size(); }
-  void shrink(std::size_t n_postures);
+  void shrink(std::size_t n_postures) {
+    for (const auto& meter : meters_) {
+      if (meter) meter->shrink(n_postures);
+    }
+    for (Analog& analog : analog_) {
+      if (analog.crowd) analog.crowd->shrink(n_postures);
+    }
+    if (known_.size() <= n_postures + 1) return;
+    known_.resize(n_postures + 1);
+    rows_.resize(known_.size() * n_words_);
+  }
 
  private:
   using Word = ZoneSet::Word;
@@ -170,15 +393,71 @@ class PostureSight {
     std::optional<PosturePowers> crowd{};  ///< measures people together, once somebody asked
   };
 
-  std::span<Word> row(const Postures& postures, PostureSolids& solids, Number number);
-  void look(const Postures& postures, PostureSolids& solids, Number number, std::span<Word> row);
-  [[nodiscard]] PosturePowers& meter_of(std::uint32_t person);
+  std::span<Word> row(const Postures& postures, PostureSolids& solids, Number number) {
+    if (known_.size() <= number) {
+      known_.resize(postures.size() + 1, 0);
+      rows_.resize(known_.size() * n_words_);
+    }
+    const std::span<Word> row = std::span(rows_).subspan(number * n_words_, n_words_);
+    if (known_[number] == 0) look(postures, solids, number, row);
+    known_[number] = 1;
+    return row;
+  }
+  void look(const Postures& postures, PostureSolids& solids, Number number, std::span<Word> row) {
+    zones_.clear();
+    if (tracer_) tracer_->add(postures.person(number), solids.of(postures, number), zones_);
+    std::ranges::copy(zones_.words(), row.begin());
+    const std::span<Word> touched = row.subspan(n_zone_words_, n_touched_words_);
+    const std::span<Word> powers = row.subspan(n_zone_words_ + n_touched_words_);
+    if (!analog_.empty()) {
+      PosturePowers& meter = meter_of(postures.person(number));
+      meter.measure(postures, {&number, 1}, powers_);
+      std::ranges::copy(meter.touched().words(), touched.begin());
+      std::ranges::transform(powers_, powers.begin(), [](PowerSteps power) { return std::bit_cast<Word>(power); });
+    }
+    if (other_ == nullptr) return;
+    const std::span<const Word> seen = other_->row(postures, solids, number);
+    for (std::size_t i = 0; i < n_zone_words_; ++i) row[i] |= common_.zones.words()[i] & seen[i];
+    for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
+      if (common_.sensors[sensor] == 0) continue;
+      const auto& [begin, end, zones, crowd] = analog_[sensor];
+      for (std::size_t i = 0; i < n_touched_words_; ++i) touched[i] |= zones.words()[i] & seen[n_zone_words_ + i];
+      for (std::uint32_t i = begin; i < end; ++i) powers[i] = seen[n_zone_words_ + n_touched_words_ + i];
+    }
+  }
+  [[nodiscard]] PosturePowers& meter_of(std::uint32_t person) {
+    if (meters_.size() <= person) meters_.resize(person + 1);
+    if (!meters_[person]) meters_[person] = std::make_unique<PosturePowers>(study_, common_.sensors);
+    return *meters_[person];
+  }
   /// True if no two of them are in one of the sensor's zones: then none hides another, and their powers add up.
   [[nodiscard]] bool apart(const Postures& postures, PostureSolids& solids, std::span<const Number> people,
-                           const ZoneSet& zones);
+                           const ZoneSet& zones) {
+    occupied_.assign(n_touched_words_, 0);
+    for (const Number number : people) {
+      const std::span<const Word> touched = row(postures, solids, number).subspan(n_zone_words_, n_touched_words_);
+      for (std::size_t i = 0; i < n_touched_words_; ++i) {
+        const Word here = touched[i] & zones.words()[i];
+        if ((occupied_[i] & here) != 0) return false;
+        occupied_[i] |= here;
+      }
+    }
+    return true;
+  }
   /// What one sensor receives of people together; powers: (n_receivers) only that sensor's are set.
   void measure_together(const Postures& postures, std::span<const Number> people, std::size_t sensor,
-                        std::span<PowerSteps> powers);
+                        std::span<PowerSteps> powers) {
+    if (other_ != nullptr && common_.sensors[sensor] != 0)
+      return other_->measure_together(postures, people, sensor, powers);
+    auto& [begin, end, zones, crowd] = analog_[sensor];
+    if (!crowd) {
+      std::vector<std::uint8_t> others(analog_.size(), 1);
+      others[sensor] = 0;
+      crowd.emplace(study_, others);
+    }
+    crowd->measure(postures, people, together_);
+    for (std::uint32_t i = begin; i < end; ++i) powers[i] = together_[i];
+  }
 
   const CompiledStudy& study_;
   InCommon common_;
@@ -195,377 +474,6 @@ class PostureSight {
   std::vector<Word> occupied_;                 ///< scratch
 };
 
-PeopleTrack Postures::follow(const CompiledStudy& study, std::uint32_t run) {
-  RunState state(study, run);
-  const std::vector<Actor>& actors = state.crowd.actors();
-  PeopleTrack track{
-      {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, 0, actors.size(), {}};
-  std::vector<std::uint64_t> figures;
-  for (const Actor& actor : actors) figures.push_back(number_of(actor.person()));
-  index_.make_room_for(actors.size());
-  const auto note_postures = [&] {
-    for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, figures[i], actors[i]));
-  };
-  note_postures();
-  for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
-    if (move_tick(study, state) && !end) track.rows.rows.samples.push_back(state.sample);
-    if (state.finished && !end) end = study.stages().heard_by(state.tick);
-    for (const std::size_t seat : state.crowd.seats_left()) track.rows.seats_left.push_back({state.tick, seat});
-    note_postures();
-  }
-  track.n_ticks = static_cast<std::size_t>(state.tick);
-  return track;
-}
-
-void Postures::shrink(std::size_t n) noexcept {
-  index_.shrink(n);
-  people_.resize(std::min(n, people_.size()));
-}
-
-std::uint64_t Postures::number_of(const PersonModel& person) {
-  const auto known = std::ranges::find_if(figures_, [&](const Figure& figure) {
-    return figure.humanoid == person.humanoid && figure.radiance == person.radiance;
-  });
-  if (known != figures_.end()) return static_cast<std::uint64_t>(known - figures_.begin());
-  figures_.push_back({person.humanoid, person.radiance});
-  return figures_.size() - 1;
-}
-
-PostureIndex::Number Postures::number_of(std::uint32_t person, std::uint64_t figure, const Actor& actor) {
-  if (!actor.present()) return 0;
-  const PostureIndex::Number known = index_.find(person, figure, actor.motion().outline());
-  if (known != 0) return known;
-  people_.push_back(person);
-  return index_.remember(person);
-}
-
-namespace {
-
-/// The zones of these sensors. sensors: (n_sensors) 1 for those that are meant.
-ZoneSet zones_of(const RayBundle& bundle, std::span<const std::uint8_t> sensors) {
-  ZoneSet zones(bundle.n_zones());
-  for (std::size_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
-    const std::uint32_t end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
-    auto zone = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
-    for (; zone < end && sensors[sensor] != 0; ++zone) zones.insert(zone);
-  }
-  return zones;
-}
-
-}  // namespace
-
-PosturePowers::PosturePowers(const CompiledStudy& study, std::span<const std::uint8_t> left_out)
-    : power_(study.array().analog()->power()),
-      powers_(power_.n_receivers(), 0),
-      n_hit_(power_.clipped().n_zones(), 0),
-      touched_(power_.clipped().n_zones()) {
-  const ZoneSet unasked = zones_of(power_.clipped(), left_out);
-  rated_ = without(power_.rays().bundle, unasked);
-  clipped_ = without(power_.clipped(), unasked);
-  const std::vector<std::uint32_t>& begin = power_.clipped().zone_rays_begin;
-  for (std::size_t zone = 0; zone < power_.clipped().n_zones(); ++zone) {
-    for (std::uint32_t ray = begin[zone]; ray < begin[zone + 1] && !unasked.test(zone); ++ray) {
-      rays_.push_back(ray);
-      zone_of_.push_back(static_cast<std::uint32_t>(zone));
-    }
-  }
-  tracer_ = rt::make_tracer(study.tracer(), {&study.array().room(), &rated_, &clipped_});
-}
-
-void PosturePowers::measure(const Postures& postures, std::span<const PostureIndex::Number> people,
-                            std::span<PowerSteps> powers) {
-  moved_.clear();
-  for (std::size_t i = 0; i < figures_.size(); ++i) {
-    const bool stays = i < people.size() && people[i] != 0 && figures_[i].figure == postures.figure(people[i]);
-    if (figures_[i].posture != 0 && !stays) moved_.push_back({i, {}, {}});
-  }
-  follow();
-  for (const rt::Moved& gone : moved_) figures_[gone.person].posture = 0;
-  moved_.clear();
-  if (figures_.size() < people.size()) figures_.resize(people.size());
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    Figure& figure = figures_[i];
-    if (people[i] == figure.posture) continue;
-    if (figure.posture == 0) {
-      figure.figure = postures.figure(people[i]);
-      figure.radiance = postures.radiance(people[i]);
-      figure.surfaces = surfaces_of(figure.radiance);
-    }
-    figure.posture = people[i];
-    moved_.push_back(
-        {i, figure.mannequin.pose(postures.humanoid(people[i]), postures.outline(people[i])), figure.surfaces});
-  }
-  follow();
-  std::ranges::copy(powers_, powers.begin());
-}
-
-void PosturePowers::shrink(std::size_t n) noexcept {
-  for (Figure& figure : figures_) {
-    if (figure.posture > n) figure.posture = forgotten;
-  }
-}
-
-void PosturePowers::follow() {
-  if (moved_.empty() || rays_.empty()) return;
-  tracer_->follow(moved_, changes_);
-  for (const auto& [ray, before, after] : changes_) {
-    const std::uint32_t of_study = rays_[ray];
-    powers_[power_.receiver_of(of_study)] += power(of_study, after) - power(of_study, before);
-    std::uint32_t& n = n_hit_[zone_of_[ray]];
-    if (before == rt::no_solid && n++ == 0) touched_.insert(zone_of_[ray]);
-    if (after == rt::no_solid && --n == 0) touched_.erase(zone_of_[ray]);
-  }
-}
-
-std::span<const PosedShape> PostureSolids::of(const Postures& postures, Number number) {
-  if (number <= n_kept_) return {&kept_[(number - 1) * body::n_parts], body::n_parts};
-  const std::uint32_t person = postures.person(number);
-  if (mannequins_.size() <= person) mannequins_.resize(person + 1);
-  const auto solids = mannequins_[person].pose(postures.humanoid(number), postures.outline(number));
-  if (number == n_kept_ + 1 && number <= n_to_keep_) {
-    kept_.insert(kept_.end(), solids.begin(), solids.end());
-    ++n_kept_;
-  }
-  return solids;
-}
-
-void PostureSolids::shrink(std::size_t n) {
-  n_kept_ = std::min(n_kept_, n);
-  kept_.resize(n_kept_ * body::n_parts);
-}
-
-// What two studies have in common.
-
-namespace {
-
-bool same_rays(const RayBundle& a, const RayBundle& b, std::size_t begin, std::size_t end) {
-  static_assert(sizeof(Ray) == 6 * sizeof(float));  // nothing but numbers: equal bytes are equal rays
-  return std::memcmp(a.rays.data() + begin, b.rays.data() + begin, (end - begin) * sizeof(Ray)) == 0 &&
-         std::memcmp(a.range.data() + begin, b.range.data() + begin, (end - begin) * sizeof(float)) == 0;
-}
-
-bool same_shape(const RayBundle& a, const RayBundle& b) {
-  return a.zone_rays_begin == b.zone_rays_begin && a.cluster_zones_begin == b.cluster_zones_begin &&
-         a.sensor_clusters_begin == b.sensor_clusters_begin;
-}
-
-struct Range {
-  std::uint32_t begin, end;
-};
-Range zones_of(const RayBundle& bundle, std::size_t sensor) {
-  return {bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]],
-          bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]]};
-}
-Range rays_of(const RayBundle& bundle, std::size_t sensor) {
-  const auto [begin, end] = zones_of(bundle, sensor);
-  return {bundle.zone_rays_begin[begin], bundle.zone_rays_begin[end]};
-}
-
-bool same_zones(const SensorArray& a, const SensorArray& b, std::size_t sensor) {
-  const auto [begin, end] = rays_of(b.clipped(), sensor);
-  return same_shape(a.clipped(), b.clipped()) && same_rays(a.clipped(), b.clipped(), begin, end) &&
-         same_rays(a.rated(), b.rated(), begin, end);
-}
-
-bool same_power(const PowerModel& a, const PowerModel& b, std::size_t sensor) {
-  if (!same_shape(a.clipped(), b.clipped()) || a.receivers_begin() != b.receivers_begin()) return false;
-  const auto [begin, end] = rays_of(b.clipped(), sensor);
-  if (!same_rays(a.clipped(), b.clipped(), begin, end)) return false;
-  for (std::uint32_t ray = begin; ray < end; ++ray) {
-    if (a.receiver_of(ray) != b.receiver_of(ray) || a.background(ray) != b.background(ray) ||
-        a.rays().weights[ray] != b.rays().weights[ray]) {
-      return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
-InCommon in_common(const CompiledStudy& first, const CompiledStudy& other) {
-  const SensorArray &a = first.array(), &b = other.array();
-  InCommon common{ZoneSet(b.clipped().n_zones()), std::vector<std::uint8_t>(b.n_sensors(), 0), true};
-  for (std::size_t sensor = 0; sensor < b.n_sensors(); ++sensor) {
-    bool is_same = a.n_sensors() == b.n_sensors() && a.is_analog(sensor) == b.is_analog(sensor);
-    if (b.is_analog(sensor)) {
-      is_same = is_same && same_power(a.analog()->power(), b.analog()->power(), sensor);
-      common.sensors[sensor] = is_same ? 1 : 0;
-    } else {
-      is_same = is_same && same_zones(a, b, sensor);
-      const auto [begin, end] = zones_of(b.clipped(), sensor);
-      for (std::size_t zone = begin; zone < end && is_same; ++zone) common.zones.insert(zone);
-    }
-    common.everything = common.everything && is_same;
-  }
-  return common;
-}
-
-// Sight.
-
-namespace {
-
-/// Zones that nobody looks at: those in common, and those of analog sensors.
-ZoneSet unasked(const SensorArray& array, const ZoneSet& in_common) {
-  ZoneSet zones = in_common;
-  for (std::size_t sensor = 0; sensor < array.n_sensors(); ++sensor) {
-    const auto [begin, end] = zones_of(array.clipped(), sensor);
-    for (std::size_t zone = begin; zone < end && array.is_analog(sensor); ++zone) zones.insert(zone);
-  }
-  return zones;
-}
-
-}  // namespace
-
-PostureSight::PostureSight(const CompiledStudy& study)
-    : PostureSight(
-          study,
-          {ZoneSet(study.array().clipped().n_zones()), std::vector<std::uint8_t>(study.array().n_sensors(), 0), false},
-          nullptr) {}
-
-PostureSight::PostureSight(const CompiledStudy& study, const InCommon& common, PostureSight* other)
-    : study_(study),
-      common_(common),
-      other_(other),
-      zones_(common.zones.size()),
-      n_zone_words_(zones_.words().size()),
-      n_words_(n_zone_words_),
-      known_(1, 1) {
-  const SensorArray& array = study.array();
-  const ZoneSet others = unasked(array, common.zones);
-  rated_ = without(array.rated(), others);
-  clipped_ = without(array.clipped(), others);
-  if (!clipped_.rays.empty()) tracer_ = rt::make_tracer(study.tracer(), {&array.room(), &rated_, &clipped_});
-  if (array.analog() != nullptr) {
-    const PowerModel& power = array.analog()->power();
-    for (std::size_t sensor = 0; sensor < array.n_sensors(); ++sensor) {
-      const auto [first, last] = zones_of(power.clipped(), sensor);
-      Analog analog{power.receivers_begin()[sensor], power.receivers_begin()[sensor + 1],
-                    ZoneSet(power.clipped().n_zones())};
-      for (std::size_t zone = first; zone < last; ++zone) analog.zones.insert(zone);
-      analog_.push_back(std::move(analog));
-    }
-    n_touched_words_ = ZoneSet(power.clipped().n_zones()).words().size();
-    powers_.resize(power.n_receivers());
-    together_.resize(power.n_receivers());
-    n_words_ += n_touched_words_ + powers_.size();
-  }
-  rows_.resize(n_words_, 0);
-}
-
-std::span<PostureSight::Word> PostureSight::row(const Postures& postures, PostureSolids& solids, Number number) {
-  if (known_.size() <= number) {
-    known_.resize(postures.size() + 1, 0);
-    rows_.resize(known_.size() * n_words_);
-  }
-  const std::span<Word> row = std::span(rows_).subspan(number * n_words_, n_words_);
-  if (known_[number] == 0) look(postures, solids, number, row);
-  known_[number] = 1;
-  return row;
-}
-
-PosturePowers& PostureSight::meter_of(std::uint32_t person) {
-  if (meters_.size() <= person) meters_.resize(person + 1);
-  if (!meters_[person]) meters_[person] = std::make_unique<PosturePowers>(study_, common_.sensors);
-  return *meters_[person];
-}
-
-void PostureSight::look(const Postures& postures, PostureSolids& solids, Number number, std::span<Word> row) {
-  zones_.clear();
-  if (tracer_) tracer_->add(postures.person(number), solids.of(postures, number), zones_);
-  std::ranges::copy(zones_.words(), row.begin());
-  const std::span<Word> touched = row.subspan(n_zone_words_, n_touched_words_);
-  const std::span<Word> powers = row.subspan(n_zone_words_ + n_touched_words_);
-  if (!analog_.empty()) {
-    PosturePowers& meter = meter_of(postures.person(number));
-    meter.measure(postures, {&number, 1}, powers_);
-    std::ranges::copy(meter.touched().words(), touched.begin());
-    std::ranges::transform(powers_, powers.begin(), [](PowerSteps power) { return std::bit_cast<Word>(power); });
-  }
-  if (other_ == nullptr) return;
-  const std::span<const Word> seen = other_->row(postures, solids, number);
-  for (std::size_t i = 0; i < n_zone_words_; ++i) row[i] |= common_.zones.words()[i] & seen[i];
-  for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
-    if (common_.sensors[sensor] == 0) continue;
-    const auto& [begin, end, zones, crowd] = analog_[sensor];
-    for (std::size_t i = 0; i < n_touched_words_; ++i) touched[i] |= zones.words()[i] & seen[n_zone_words_ + i];
-    for (std::uint32_t i = begin; i < end; ++i) powers[i] = seen[n_zone_words_ + n_touched_words_ + i];
-  }
-}
-
-std::span<const PowerSteps> PostureSight::powers(const Postures& postures, PostureSolids& solids, Number number) {
-  if (analog_.empty()) return {};
-  const std::span<const Word> words = row(postures, solids, number).subspan(n_zone_words_ + n_touched_words_);
-  std::ranges::transform(words, powers_.begin(), [](Word word) { return std::bit_cast<PowerSteps>(word); });
-  return powers_;
-}
-
-bool PostureSight::apart(const Postures& postures, PostureSolids& solids, std::span<const Number> people,
-                         const ZoneSet& zones) {
-  occupied_.assign(n_touched_words_, 0);
-  for (const Number number : people) {
-    const std::span<const Word> touched = row(postures, solids, number).subspan(n_zone_words_, n_touched_words_);
-    for (std::size_t i = 0; i < n_touched_words_; ++i) {
-      const Word here = touched[i] & zones.words()[i];
-      if ((occupied_[i] & here) != 0) return false;
-      occupied_[i] |= here;
-    }
-  }
-  return true;
-}
-
-void PostureSight::measure_together(const Postures& postures, std::span<const Number> people, std::size_t sensor,
-                                    std::span<PowerSteps> powers) {
-  if (other_ != nullptr && common_.sensors[sensor] != 0)
-    return other_->measure_together(postures, people, sensor, powers);
-  auto& [begin, end, zones, crowd] = analog_[sensor];
-  if (!crowd) {
-    std::vector<std::uint8_t> others(analog_.size(), 1);
-    others[sensor] = 0;
-    crowd.emplace(study_, others);
-  }
-  crowd->measure(postures, people, together_);
-  for (std::uint32_t i = begin; i < end; ++i) powers[i] = together_[i];
-}
-
-std::span<const PowerSteps> PostureSight::powers(const Postures& postures, PostureSolids& solids,
-                                                 std::span<const Number> people, std::span<const PowerSteps> there) {
-  if (analog_.empty()) return {};
-  for (const Number number : people) (void)row(postures, solids, number);  // uses powers_
-  std::ranges::fill(powers_, 0);
-  const std::size_t first_power = n_zone_words_ + n_touched_words_;
-  for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
-    const Analog& analog = analog_[sensor];
-    if (analog.begin == analog.end) continue;
-    if (common_.sensors[sensor] != 0 && !there.empty()) {
-      for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] = there[i];
-    } else if (!apart(postures, solids, people, analog.zones)) {
-      measure_together(postures, people, sensor, powers_);
-    } else {
-      for (const Number number : people) {
-        const std::span<const Word> words = row(postures, solids, number).subspan(first_power);
-        for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] += std::bit_cast<PowerSteps>(words[i]);
-      }
-    }
-  }
-  return powers_;
-}
-
-void PostureSight::shrink(std::size_t n_postures) {
-  for (const auto& meter : meters_) {
-    if (meter) meter->shrink(n_postures);
-  }
-  for (Analog& analog : analog_) {
-    if (analog.crowd) analog.crowd->shrink(n_postures);
-  }
-  if (known_.size() <= n_postures + 1) return;
-  known_.resize(n_postures + 1);
-  rows_.resize(known_.size() * n_words_);
-}
-
-namespace {
-
-using Number = PostureIndex::Number;
-
 /// A run of the first study that has been painted, in which the same people do the same.
 struct PaintedRun {
   const Recording* recording = nullptr;
@@ -574,11 +482,7 @@ struct PaintedRun {
   /// (n_receivers) at a moment, number of the run's; overwrites `powers`.
   std::span<const PowerSteps> powers(std::uint32_t moment, std::vector<PowerSteps>& powers) const {
     powers.clear();
-    if (run == nullptr || recording->moments.empty()) return {};
-    for (std::size_t sensor = 0; sensor < recording->n_sensors; ++sensor) {
-      const auto row = recording->powers_of(moment, sensor);
-      powers.insert(powers.end(), row.begin(), row.end());
-    }
+    if (run != nullptr) add_powers(*recording, moment, powers);
     return powers;
   }
 };
@@ -644,10 +548,25 @@ class Painter {
 /// What a posture shows hangs on leaves then: each study is recorded by itself.
 bool has_doors(const CompiledStudy& study) { return !study.scene().doors.empty(); }
 
+constexpr std::size_t bits_per_word = 64;
+
+void set(std::vector<std::uint64_t>& bits, std::size_t tick) {
+  bits[tick / bits_per_word] |= std::uint64_t{1} << (tick % bits_per_word);
+}
+
+std::size_t n_words(std::size_t n_ticks) { return (n_ticks + bits_per_word - 1) / bits_per_word; }
+
+/// Of a moment, as detectors take it.
+void show(const SensorArray& array, const Recording& recording, std::uint32_t moment, Exposure& exposure) {
+  exposure.zones = recording.zones(moment);
+  array.expose(exposure);
+}
+
 }  // namespace
 
 struct RecordingFamily::Impl {
-  Impl(const Model& model, std::span<const std::uint32_t> runs) : first(model.compiled()), sight(first) {
+  Impl(const Model& model, std::span<const std::uint32_t> runs)
+      : first(model.compiled()), sight(first, nothing_in_common(first.array()), nullptr) {
     const CompiledStudy& study = first;
     if (has_doors(study)) {
       tracks = pirsim::record(model, runs, 1, {});
@@ -738,24 +657,6 @@ std::span<const double> NoiseMemory::normals(const Stream& from, std::size_t n) 
   while (numbers.size() < n) numbers.push_back(next.normal());
   return std::span(numbers).first(n);
 }
-
-namespace {
-
-constexpr std::size_t bits_per_word = 64;
-
-void set(std::vector<std::uint64_t>& bits, std::size_t tick) {
-  bits[tick / bits_per_word] |= std::uint64_t{1} << (tick % bits_per_word);
-}
-
-std::size_t n_words(std::size_t n_ticks) { return (n_ticks + bits_per_word - 1) / bits_per_word; }
-
-/// Of a moment, as detectors take it.
-void show(const SensorArray& array, const Recording& recording, std::uint32_t moment, Exposure& exposure) {
-  exposure.zones = recording.zones(moment);
-  array.expose(exposure);
-}
-
-}  // namespace
 
 RememberedTriggers::RememberedTriggers(const CompiledStudy& study, const Recording& recording, NoiseMemory& noise,
                                        const RememberedTriggers* like)

@@ -97,30 +97,6 @@ pir::WindowReader in_step(std::size_t n_sensors, std::int32_t ticks_per_window) 
   return {std::vector<std::int32_t>(n_sensors, 0), ticks_per_window};
 }
 
-}  // namespace
-
-Logger::Logger(const effects::Pipeline& stages, const SensingSpec& sensing, std::size_t n_sensors)
-    : stages_(stages),
-      kind_(sensing.reader),
-      ticks_per_window_(sensing.ticks_per_window),
-      n_sensors_(n_sensors),
-      reader_(in_step(n_sensors, ticks_per_window_)) {}
-
-void Logger::begin_run(std::uint64_t seed, std::uint32_t run) {
-  stages_.begin_run(seed, run);
-  tick_ = heard_ = 0;
-  reader_ = kind_ == Reader::in_step
-                ? in_step(n_sensors_, ticks_per_window_)
-                : pir::WindowReader(pir::drawn_leads(n_sensors_, ticks_per_window_, seed, run), ticks_per_window_);
-}
-
-void Logger::complete(Sample& row) noexcept {
-  row.bits.assign(reader_.readings().begin(), reader_.readings().end());
-  stages_.apply(row);
-}
-
-namespace {
-
 /// What the people on the floor use the room for.
 std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
   int n = 0, cleaners = 0, in_meeting = 0;
@@ -159,7 +135,52 @@ void end_window(const CompiledStudy& study, RunState& state) {
   state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
 }
 
+Observer& observer_of(const CompiledStudy& study, RunState& state) {
+  if (!*state.observer)
+    *state.observer = std::make_shared<Observer>(study.array(), study.tracer(), ZonesOf::zone_sensors);
+  return **state.observer;
+}
+
+void sense(Observer& observer, RunState& state) {
+  const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
+  observer.look(state.crowd.actors(), state.crowd.doors().steps(), state.exposure());
+  state.detector.tick(before, state.exposure(), state.triggers);
+}
+
+/// What is logged at this tick, at which the state has sensed, once the run ahead has heard of it.
+void observe_tick(const CompiledStudy& study, RunState& state) {
+  RunState* const ahead = state.ahead.get();
+  state.logger.observe_tick(state.triggers, [&](std::int64_t) {
+    if (ahead != nullptr) {
+      move_tick(study, *ahead);
+      sense(observer_of(study, state), *ahead);
+      std::ranges::copy(ahead->triggers, state.triggers.begin());
+    }
+    for (const std::size_t seat : (ahead != nullptr ? *ahead : state).crowd.seats_left()) state.logger.seat_left(seat);
+  });
+}
+
 }  // namespace
+
+Logger::Logger(const effects::Pipeline& stages, const SensingSpec& sensing, std::size_t n_sensors)
+    : stages_(stages),
+      kind_(sensing.reader),
+      ticks_per_window_(sensing.ticks_per_window),
+      n_sensors_(n_sensors),
+      reader_(in_step(n_sensors, ticks_per_window_)) {}
+
+void Logger::begin_run(std::uint64_t seed, std::uint32_t run) {
+  stages_.begin_run(seed, run);
+  tick_ = heard_ = 0;
+  reader_ = kind_ == Reader::in_step
+                ? in_step(n_sensors_, ticks_per_window_)
+                : pir::WindowReader(pir::drawn_leads(n_sensors_, ticks_per_window_, seed, run), ticks_per_window_);
+}
+
+void Logger::complete(Sample& row) noexcept {
+  row.bits.assign(reader_.readings().begin(), reader_.readings().end());
+  stages_.apply(row);
+}
 
 RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
     : run(run_number),
@@ -195,35 +216,6 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
   end_window(study, state);
   return true;
 }
-
-namespace {
-
-Observer& observer_of(const CompiledStudy& study, RunState& state) {
-  if (!*state.observer)
-    *state.observer = std::make_shared<Observer>(study.array(), study.tracer(), ZonesOf::zone_sensors);
-  return **state.observer;
-}
-
-void sense(Observer& observer, RunState& state) {
-  const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
-  observer.look(state.crowd.actors(), state.crowd.doors().steps(), state.exposure());
-  state.detector.tick(before, state.exposure(), state.triggers);
-}
-
-/// What is logged at this tick, at which the state has sensed, once the run ahead has heard of it.
-void observe_tick(const CompiledStudy& study, RunState& state) {
-  RunState* const ahead = state.ahead.get();
-  state.logger.observe_tick(state.triggers, [&](std::int64_t) {
-    if (ahead != nullptr) {
-      move_tick(study, *ahead);
-      sense(observer_of(study, state), *ahead);
-      std::ranges::copy(ahead->triggers, state.triggers.begin());
-    }
-    for (const std::size_t seat : (ahead != nullptr ? *ahead : state).crowd.seats_left()) state.logger.seat_left(seat);
-  });
-}
-
-}  // namespace
 
 void settle(const CompiledStudy& study, RunState& state) {
   observer_of(study, state).look(state.crowd.actors(), state.crowd.doors().steps(), state.exposure());

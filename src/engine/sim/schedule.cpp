@@ -20,8 +20,6 @@
 
 namespace pirsim::sim {
 
-inline constexpr double until_next_s = 24.0 * 3600.0;  ///< of an action that only the next one ends
-
 /// Actions of one person, timed in seconds of the run, and never two that begin at once.
 class ActionLine {
  public:
@@ -30,23 +28,14 @@ class ActionLine {
   /// At a moment of the day, whatever goes on then.
   void at(double day_s, Action what, const char* phase = "") {
     // In whole ticks of any rate, and later than what was timed before.
-    const double run_s = std::max(std::ceil(day_s - schedule_.from_h * 3600.0), last_s_ + 1.0);
-    last_s_ = run_s;
-    add(std::move(what), phase).at_s = run_s;
+    last_s_ = std::max(std::ceil(day_s - schedule_.from_h * 3600.0), last_s_ + 1.0);
+    actions_.push_back({std::move(what), last_s_, phase, schedule_.where});
   }
   /// After what was added before.
-  void then(Action what, const char* phase = "") { add(std::move(what), phase); }
+  void then(Action what, const char* phase = "") { actions_.push_back({std::move(what), {}, phase, schedule_.where}); }
   [[nodiscard]] std::vector<ScriptedAction> take() { return std::move(actions_); }
 
  private:
-  ScriptedAction& add(Action what, const char* phase) {
-    ScriptedAction& action = actions_.emplace_back();
-    action.what = std::move(what);
-    action.phase = phase;
-    action.where = schedule_.where;
-    return action;
-  }
-
   const ScheduleSpec& schedule_;
   double last_s_ = -1.0;
   std::vector<ScriptedAction> actions_;
@@ -198,16 +187,10 @@ void pass_the_time(StayLine& day, Stream& stream) {
   for (const HomeStay& gap : stays) {
     if (gap.activity != HomeActivity::rest) continue;
     for (double now = gap.from_s; gap.to_s - now >= shortest_pastime_s;) {
-      double all = 0.0;
-      for (std::size_t i = 0; i < pastimes.size(); ++i) all += left_s[i] * appeal(pastimes[i].activity, now);
-      if (!(all > 0.0)) break;
-      double u = all * stream.uniform();
-      std::size_t chosen = 0;
-      for (std::size_t i = 0; i < pastimes.size(); ++i) {
-        if (left_s[i] <= 0.0) continue;
-        chosen = i;
-        if ((u -= left_s[i] * appeal(pastimes[i].activity, now)) < 0.0) break;
-      }
+      std::array<double, pastimes.size()> weights{};
+      for (std::size_t i = 0; i < pastimes.size(); ++i) weights[i] = left_s[i] * appeal(pastimes[i].activity, now);
+      if (std::ranges::all_of(weights, [](double weight) { return weight <= 0.0; })) break;
+      const std::size_t chosen = pick(stream, weights);
       const double session_s = std::max(shortest_pastime_s, about(stream, pastimes[chosen].session_min * minute_s));
       const double until = std::min(now + std::min(session_s, std::max(left_s[chosen], shortest_pastime_s)), gap.to_s);
       day.put(pastimes[chosen].activity, now, until);
@@ -233,51 +216,6 @@ void go_to_the_toilet(StayLine& day, const Nights& nights, double age_years, Str
   visit_between(home_day_begins_s, nights.wakes_s);
   visit_between(nights.goes_to_bed_s, home_day_ends_s);
 }
-
-}  // namespace
-
-double night_visits(double age_years) {
-  // Share of men and women who get up at all, averaged: 20-39, 40-59, 60 and older. Ref: [Soysal2023].
-  const double share = age_years < 40.0   ? 0.5 * (0.568 + 0.689)
-                       : age_years < 60.0 ? 0.5 * (0.702 + 0.743)
-                                          : 0.5 * (0.827 + 0.847);
-  return -std::log(1.0 - share);
-}
-
-HomeDay draw_home_day(const HouseholdSpec& household, std::uint64_t seed, std::uint32_t run, std::int64_t day) {
-  const bool works = is_working_day(day);
-  const auto today = [&](std::size_t i) { return works ? household.residents[i].occupation : Occupation::at_home; };
-  std::vector<StayLine> days(household.residents.size(), StayLine(HomeActivity::rest));
-  std::vector<Stream> streams;
-  std::vector<Nights> nights;
-  for (std::size_t i = 0; i < days.size(); ++i) {
-    Stream& stream = streams.emplace_back(StreamKey{seed, run, static_cast<std::uint32_t>(i), Purpose::home_day});
-    const double wakes_s = around(stream, works ? household.wakes : household.wakes_on_free_days);
-    const double goes_to_bed_s = around(stream, household.goes_to_bed);
-    nights.push_back({std::clamp(wakes_s, home_day_begins_s, home_day_ends_s),
-                      std::clamp(goes_to_bed_s, std::max(wakes_s, home_day_begins_s), home_day_ends_s)});
-    sleep_and_wash(days[i], nights[i], stream);
-    spend_the_day(days[i], household, today(i), stream);
-  }
-  Stream together({seed, run, 0, Purpose::home_meals});
-  const double lunch_at_s = around(together, household.lunch), dinner_at_s = around(together, household.dinner);
-  have_meal(days, lunch_at_s, lunch_cooking_s, lunch_s, together);
-  have_meal(days, dinner_at_s, dinner_cooking_s, dinner_s, together);
-  HomeDay drawn;
-  constexpr double visit_h = 19.5, visit_sd_h = 1.0, visit_mean_s = 2.0 * hour_s;  // assumed (18-21 h, 1-3 h)
-  const double visited = together.uniform(), comes_s = (visit_h + visit_sd_h * cut_normal(together)) * hour_s;
-  const double goes_s = comes_s + about(together, visit_mean_s);
-  if (visited < household.visits_a_week / 7.0) drawn.visits.push_back({comes_s, goes_s});
-  for (std::size_t i = 0; i < days.size(); ++i) {
-    pass_the_time(days[i], streams[i]);
-    if (today(i) == Occupation::works_at_home) take_breaks(days[i], streams[i]);
-    go_to_the_toilet(days[i], nights[i], household.residents[i].age_years, streams[i]);
-    drawn.residents.push_back(days[i].joined());
-  }
-  return drawn;
-}
-
-namespace {
 
 /// Puts a day's draw into a room.
 class Day {
@@ -351,12 +289,7 @@ class Day {
     action::Sit sit{trial_.people[person].spec.part->seat};
     sit.if_taken = action::IfTaken::other_seat;
     line.then(sit);
-    for (double left_s = for_s; left_s > 0.0;) {
-      action::Work work = draw_desk_work(stream);
-      left_s -= work.duration_s;
-      if (left_s <= 0.0) work.duration_s = until_next_s;
-      line.then(work);
-    }
+    for (const action::Work& work : draw_desk_work(stream, for_s)) line.then(work);
   }
 
   /// Now and then they get up for a call.
@@ -505,29 +438,6 @@ class Day {
   std::vector<MeetingSeats> seats_of_;  ///< (n_meetings)
 };
 
-}  // namespace
-
-std::int64_t day_of(const CompiledStudy& study, std::uint32_t run) { return study.clock_of(run)->begin_day(); }
-
-DayDraw draw_times(const CompiledStudy& study, std::uint32_t run) {
-  const TrialModel& trial = study.trial_of(run);
-  std::vector<std::optional<DayPerson>> people;
-  for (const PersonModel& person : trial.people) {
-    const auto& part = person.spec.part;
-    people.push_back(part ? std::optional(DayPerson{part->part, part->role, part->room}) : std::nullopt);
-  }
-  std::vector<int> most_at_meeting;
-  for (std::size_t room = 0; room < trial.schedule->meetings.size(); ++room)
-    most_at_meeting.push_back(pirsim::most_at_meeting(*trial.schedule, room, study.scene()));
-  return draw_times(DaySource{*trial.schedule, people, most_at_meeting, study.seed(), run, day_of(study, run)});
-}
-
-DayPlan draw_day(const CompiledStudy& study, std::uint32_t run) {
-  return study.trial_of(run).schedule->household ? plan_home_day(study, run) : Day(study, run).plan();
-}
-
-namespace {
-
 enum class Posture { sit, lie, stand };
 
 /// A seat or a place that people may take.
@@ -615,11 +525,14 @@ class HomeDayPlan {
     state_[person] = State::present;
     const HomeManner manner = manner_of(stay.activity);
     Spot* const spot = spot_for(person, stay, manner);
-    if (spot == nullptr) return stay_there(line, stay, manner);
+    if (spot == nullptr) return line.at(stay.from_s, action::Wait{until_next_s}, manner.phase);
     spot->taken_until_s = stay.to_s;
     if (was_there || spot->id != trial_.people[person].spec.part->seat) take(line, stay.from_s, *spot, manner.phase);
-    if (stay.activity == HomeActivity::work && spot->posture == Posture::sit)
-      return work_there(line, stay, conduct_[person], manner.phase);
+    if (stay.activity == HomeActivity::work && spot->posture == Posture::sit) {
+      const std::vector<action::Work> works = draw_desk_work(conduct_[person], stay.to_s - stay.from_s);
+      for (const action::Work& work : works) line.then(work, manner.phase);
+      return;
+    }
     line.then(action::Wait{until_next_s, fitting(manner.activity, spot->posture)}, manner.phase);
   }
 
@@ -631,20 +544,6 @@ class HomeDayPlan {
         return line.at(at_s, action::Lie{spot.id}, phase);
       case Posture::stand:
         return line.at(at_s, action::Stand{spot.id}, phase);
-    }
-  }
-
-  static void stay_there(ActionLine& line, const HomeStay& stay, const HomeManner& manner) {
-    line.at(stay.from_s, action::Wait{until_next_s}, manner.phase);
-  }
-
-  /// As at a desk of an office: one thing after the other.
-  static void work_there(ActionLine& line, const HomeStay& stay, Stream& stream, const char* phase) {
-    for (double left_s = stay.to_s - stay.from_s; left_s > 0.0;) {
-      action::Work work = draw_desk_work(stream);
-      left_s -= work.duration_s;
-      if (left_s <= 0.0) work.duration_s = until_next_s;
-      line.then(work, phase);
     }
   }
 
@@ -694,6 +593,66 @@ class HomeDayPlan {
 };
 
 }  // namespace
+
+double night_visits(double age_years) {
+  // Share of men and women who get up at all, averaged: 20-39, 40-59, 60 and older. Ref: [Soysal2023].
+  const double share = age_years < 40.0   ? 0.5 * (0.568 + 0.689)
+                       : age_years < 60.0 ? 0.5 * (0.702 + 0.743)
+                                          : 0.5 * (0.827 + 0.847);
+  return -std::log(1.0 - share);
+}
+
+HomeDay draw_home_day(const HouseholdSpec& household, std::uint64_t seed, std::uint32_t run, std::int64_t day) {
+  const bool works = is_working_day(day);
+  const auto today = [&](std::size_t i) { return works ? household.residents[i].occupation : Occupation::at_home; };
+  std::vector<StayLine> days(household.residents.size(), StayLine(HomeActivity::rest));
+  std::vector<Stream> streams;
+  std::vector<Nights> nights;
+  for (std::size_t i = 0; i < days.size(); ++i) {
+    Stream& stream = streams.emplace_back(StreamKey{seed, run, static_cast<std::uint32_t>(i), Purpose::home_day});
+    const double wakes_s = around(stream, works ? household.wakes : household.wakes_on_free_days);
+    const double goes_to_bed_s = around(stream, household.goes_to_bed);
+    nights.push_back({std::clamp(wakes_s, home_day_begins_s, home_day_ends_s),
+                      std::clamp(goes_to_bed_s, std::max(wakes_s, home_day_begins_s), home_day_ends_s)});
+    sleep_and_wash(days[i], nights[i], stream);
+    spend_the_day(days[i], household, today(i), stream);
+  }
+  Stream together({seed, run, 0, Purpose::home_meals});
+  const double lunch_at_s = around(together, household.lunch), dinner_at_s = around(together, household.dinner);
+  have_meal(days, lunch_at_s, lunch_cooking_s, lunch_s, together);
+  have_meal(days, dinner_at_s, dinner_cooking_s, dinner_s, together);
+  HomeDay drawn;
+  constexpr double visit_h = 19.5, visit_sd_h = 1.0, visit_mean_s = 2.0 * hour_s;  // assumed (18-21 h, 1-3 h)
+  const double visited = together.uniform(), comes_s = (visit_h + visit_sd_h * cut_normal(together)) * hour_s;
+  const double goes_s = comes_s + about(together, visit_mean_s);
+  if (visited < household.visits_a_week / 7.0) drawn.visits.push_back({comes_s, goes_s});
+  for (std::size_t i = 0; i < days.size(); ++i) {
+    pass_the_time(days[i], streams[i]);
+    if (today(i) == Occupation::works_at_home) take_breaks(days[i], streams[i]);
+    go_to_the_toilet(days[i], nights[i], household.residents[i].age_years, streams[i]);
+    drawn.residents.push_back(days[i].joined());
+  }
+  return drawn;
+}
+
+std::int64_t day_of(const CompiledStudy& study, std::uint32_t run) { return study.clock_of(run)->begin_day(); }
+
+DayDraw draw_times(const CompiledStudy& study, std::uint32_t run) {
+  const TrialModel& trial = study.trial_of(run);
+  std::vector<std::optional<DayPerson>> people;
+  for (const PersonModel& person : trial.people) {
+    const auto& part = person.spec.part;
+    people.push_back(part ? std::optional(DayPerson{part->part, part->role, part->room}) : std::nullopt);
+  }
+  std::vector<int> most_at_meeting;
+  for (std::size_t room = 0; room < trial.schedule->meetings.size(); ++room)
+    most_at_meeting.push_back(pirsim::most_at_meeting(*trial.schedule, room, study.scene()));
+  return draw_times(DaySource{*trial.schedule, people, most_at_meeting, study.seed(), run, day_of(study, run)});
+}
+
+DayPlan draw_day(const CompiledStudy& study, std::uint32_t run) {
+  return study.trial_of(run).schedule->household ? plan_home_day(study, run) : Day(study, run).plan();
+}
 
 HomeManner manner_of(HomeActivity activity) {
   switch (activity) {

@@ -50,38 +50,33 @@ std::set<std::string> set_aside(const MeetingsSpec& meetings, const SceneSpec& s
   return seats;
 }
 
+/// what: asks for them, and of which kind they are: "schedule: entrance".
 void require_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
-                   const std::string& kind, const std::string& scene, const Where& where, Diagnostics& faults) {
+                   const std::string& what, const std::string& scene, const Where& where, Diagnostics& faults) {
   for (const std::string& name : wanted) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    faults.error(where, "occupancy: " + kind + " '" + name + "' is not in " + scene + near_or_all(name, known));
+    faults.error(where, what + " '" + name + "' is not in " + scene + near_or_all(name, known));
   }
 }
 
 /// Who owns which desk: seats that are asked for, then those that nobody has.
 class Desks {
  public:
-  Desks(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics)
-      : scene_(scene), diagnostics_(diagnostics) {
+  Desks(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
+    const std::vector<std::string> names = ids_of(scene.seats);
     std::set<std::string> kept;
     for (const MeetingsSpec& meetings : schedule.meetings) kept.merge(set_aside(meetings, scene));
     for (const SeatSpec& seat : scene.seats) {
-      names_.push_back(seat.id);
       if (is_for(seat, "work") && !kept.contains(seat.id)) desks_.push_back(seat.id);
     }
     for (const StaffSpec& staff : schedule.staff) {
       for (const std::string& seat : staff.seats) {
-        if (require(seat, staff.where) && !taken_.insert(seat).second) {
-          diagnostics_.error(staff.where, "schedule: seat '" + seat + "' is the own desk of two people");
-        }
+        require_names({seat}, names, "schedule: seat", scene.name, staff.where, diagnostics);
+        const bool is_known = std::ranges::find(names, seat) != names.end();
+        if (is_known && !taken_.insert(seat).second)
+          diagnostics.error(staff.where, "schedule: seat '" + seat + "' is the own desk of two people");
       }
     }
-  }
-
-  bool require(const std::string& seat, const Where& where) {
-    if (std::ranges::find(names_, seat) != names_.end()) return true;
-    diagnostics_.error(where, "schedule: seat '" + seat + "' is not in " + scene_.name + near_or_all(seat, names_));
-    return false;
   }
 
   /// Of the i-th of these; none if there are no more.
@@ -97,22 +92,9 @@ class Desks {
   [[nodiscard]] bool is_taken(const std::string& seat) const { return taken_.contains(seat); }
 
  private:
-  const SceneSpec& scene_;
-  Diagnostics& diagnostics_;
-  std::vector<std::string> names_, desks_;
+  std::vector<std::string> desks_;
   std::set<std::string> taken_;
 };
-
-void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
-  std::vector<std::string> doors;
-  for (const EntranceSpec& door : scene.entrances) doors.push_back(door.id);
-  for (const std::string& door : schedule.entrances) {
-    if (std::ranges::find(doors, door) != doors.end()) continue;
-    diagnostics.error(schedule.where,
-                      "schedule: entrance '" + door + "' is not in " + scene.name + near_or_all(door, doors));
-  }
-  if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
-}
 
 int number_of(const std::vector<StaffSpec>& staff) {
   int n = 0;
@@ -253,7 +235,10 @@ int most_at_meeting(const ScheduleSpec& schedule, std::size_t room, const SceneS
 std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene, std::uint64_t seed) {
   Diagnostics diagnostics;
   Desks desks(schedule, scene, diagnostics);
-  check_entrances(schedule, scene, diagnostics);
+  require_names(schedule.entrances, ids_of(scene.entrances), "schedule: entrance", scene.name, schedule.where,
+                diagnostics);
+  if (scene.entrances.empty())
+    diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
   std::vector<ScheduledPerson> people;
   const auto add = [&](SchedulePart part, Role role, const std::string& name, const std::string& seat) {
     people.push_back(
@@ -280,9 +265,8 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
           std::string(word_of(staff.role)) + '_' + std::to_string(++numbers[staff.role]), *seat);
     }
   }
-  for (const MeetingsSpec& meetings : schedule.meetings) {
-    for (const std::string& seat : meetings.seats) desks.require(seat, meetings.where);
-  }
+  for (const MeetingsSpec& meetings : schedule.meetings)
+    require_names(meetings.seats, ids_of(scene.seats), "schedule: seat", scene.name, meetings.where, diagnostics);
   for (std::size_t room = 0; room < schedule.meetings.size(); ++room)
     check_meetings(schedule, room, scene, diagnostics);
   diagnostics.throw_if_errors();
@@ -300,12 +284,13 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
 
 std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene, std::uint64_t seed) {
   Diagnostics faults;
-  require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
-  require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
+  require_names(occupancy.seats, ids_of(scene.seats), "occupancy: seat", scene.name, occupancy.where, faults);
+  require_names(occupancy.entrances, ids_of(scene.entrances), "occupancy: entrance", scene.name, occupancy.where,
+                faults);
   if (occupancy.counts) {
     std::vector<std::string> areas;
     for (const AreaCountsSpec& area : occupancy.counts->areas) areas.push_back(area.area);
-    require_names(areas, ids_of(scene.areas), "area", scene.name, occupancy.where, faults);
+    require_names(areas, ids_of(scene.areas), "occupancy: area", scene.name, occupancy.where, faults);
   }
   if (scene.entrances.empty() && !occupancy.positions)
     faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
@@ -324,7 +309,6 @@ std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const Sce
 
 namespace {
 
-constexpr double until_next_s = 1e6;   ///< of an action that only the next one ends
 constexpr double standstill_m = 0.05;  ///< assumed: who moves less hasn't walked (0.02-0.1)
 
 /// What one person does, as their stays tell it.
@@ -381,16 +365,10 @@ class Replay {
   /// The first thing that somebody comes for follows from coming in.
   void take(double at_s, bool has_come, Action what) { has_come ? at(at_s, std::move(what)) : then(std::move(what)); }
   void at(double data_s, Action what) {
-    const double last_s = last_s_;
-    last_s_ = std::max(data_s - begin_s_, last_s);
-    then(std::move(what));
-    actions_.back().at_s = last_s_;
+    last_s_ = std::max(data_s - begin_s_, last_s_);
+    actions_.push_back({std::move(what), last_s_, {}, where_});
   }
-  void then(Action what) {
-    ScriptedAction& action = actions_.emplace_back();
-    action.what = std::move(what);
-    action.where = where_;
-  }
+  void then(Action what) { actions_.push_back({std::move(what), {}, {}, where_}); }
 
   std::vector<const EntranceSpec*> doors_;
   double begin_s_;
@@ -438,10 +416,8 @@ std::vector<PersonSpec> followed(const OccupancySpec& occupancy, double begin_s,
       if (!track.headings_deg.empty()) follow.headings_deg.push_back(track.headings_deg[i]);
     }
     if (follow.times_s.empty()) continue;
-    ScriptedAction& action = person.actions.emplace_back();
-    action.at_s = std::max(0.0, follow.times_s.front() - tick_s);
-    action.what = std::move(follow);
-    action.where = track.where;
+    const double at_s = std::max(0.0, follow.times_s.front() - tick_s);
+    person.actions.push_back({std::move(follow), at_s, {}, track.where});
   }
   return people;
 }

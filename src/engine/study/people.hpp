@@ -11,8 +11,10 @@
 
 namespace pirsim {
 
-/// What somebody of a schedule is there for.
-/// occupant: of an occupancy, which has no roles
+/// Of an action that only the next one ends.
+inline constexpr double until_next_s = 1e6;
+
+/// What somebody of a schedule is there for; an occupant is of an occupancy, which has no roles.
 enum class SchedulePart { staff, guest, cleaner, occupant, resident, visitor };
 
 struct ScheduledPerson {

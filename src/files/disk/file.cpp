@@ -33,6 +33,96 @@ auto without_interruption(const Call& call) {
   throw Error(ErrorCode::io, Where{path.string()}, std::string("can't be written: it ") + why + "; move it away");
 }
 
+void append_utf8(char32_t code, std::string& text) {
+  const auto add = [&](char32_t bits) { text += static_cast<char>(static_cast<unsigned char>(bits)); };
+  if (code < 0x80) return add(code);
+  if (code < 0x800) return add(0xC0U | code >> 6U), add(0x80U | (code & 0x3FU));
+  if (code < 0x10000) {
+    add(0xE0U | code >> 12U);
+  } else {
+    add(0xF0U | code >> 18U);
+    add(0x80U | (code >> 12U & 0x3FU));
+  }
+  add(0x80U | (code >> 6U & 0x3FU));
+  add(0x80U | (code & 0x3FU));
+}
+
+constexpr const char* half_a_pair = "half of a pair of surrogates";
+
+namespace fs = std::filesystem;
+
+/// How `text` ends, as a place in its file: `text` is UTF-8 up to there.
+Where end_of(std::string_view text, const std::string& name) {
+  const auto line = 1 + std::ranges::count(text, '\n');
+  const std::string_view last = text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
+  const auto column =
+      1 + std::ranges::count_if(last, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+  return {name, static_cast<int>(line), static_cast<int>(column)};
+}
+
+std::string from_utf16(std::string_view bytes, Utf16Decoder::ByteOrder order, const std::string& name) {
+  Utf16Decoder decoder(order);
+  std::string text;
+  auto fault = decoder.add(bytes, text);
+  if (!fault) fault = decoder.finish();
+  if (fault) throw Error(ErrorCode::input, end_of(text, name), "not UTF-16: " + *fault);
+  return text;
+}
+
+bool has_folder(const fs::path& path) {
+  const std::string whole = path.lexically_normal().string();
+  std::error_code fault;
+  return !whole.starts_with("/dev/") && !whole.starts_with("/proc/") && !fs::is_fifo(path, fault);
+}
+
+constexpr int most_names = 1000;  // of files that processes with this number left behind
+constexpr const char* writing = ".writing-";
+
+/// Of a writer of this path that was killed: nobody holds a lock on it.
+void remove_left_behind(const std::filesystem::path& path) {
+  const std::string begin = path.filename().string() + writing;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code fault;
+  for (std::filesystem::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
+    if (!entry->path().filename().string().starts_with(begin)) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (try_lock(descriptor) == Lock::taken && is_named(entry->path(), descriptor)) ::unlink(entry->path().c_str());
+    ::close(descriptor);
+  }
+}
+
+/// False if it was taken for one that was left behind.
+bool is_mine(const std::filesystem::path& path, int descriptor) {
+  return try_lock(descriptor) != Lock::of_another && is_named(path, descriptor);
+}
+
+constexpr std::string_view before_digest = " #";
+
+std::string next_digest(const std::string& last, const std::string& text) {
+  constexpr std::size_t digits = 16;  // damage is to be told, not forgery
+  return sha256(last + text).substr(0, digits);
+}
+
+/// With its end of line.
+std::string sealed(std::string& last, const std::string& text) {
+  last = next_digest(last, text);
+  return text + std::string(before_digest) + last + '\n';
+}
+
+/// The text of the next line; none if it isn't what was written, or broke off.
+std::optional<std::string> next_text(std::istream& lines, std::string& last) {
+  std::string line;
+  if (!std::getline(lines, line) || lines.eof()) return std::nullopt;
+  const std::size_t at = line.rfind(before_digest);
+  if (at == std::string::npos) return std::nullopt;
+  std::string text = line.substr(0, at);
+  std::string digest = next_digest(last, text);
+  if (line.compare(at + before_digest.size(), std::string::npos, digest) != 0) return std::nullopt;
+  last = std::move(digest);
+  return text;
+}
+
 }  // namespace
 
 Lock try_lock(int descriptor) noexcept {
@@ -126,26 +216,6 @@ void PosixFile::fail(const char* what) const {
   throw Error(ErrorCode::io, Where{path_.string()}, std::string(what) + ": " + std::generic_category().message(errno));
 }
 
-namespace {
-
-void append_utf8(char32_t code, std::string& text) {
-  const auto add = [&](char32_t bits) { text += static_cast<char>(static_cast<unsigned char>(bits)); };
-  if (code < 0x80) return add(code);
-  if (code < 0x800) return add(0xC0U | code >> 6U), add(0x80U | (code & 0x3FU));
-  if (code < 0x10000) {
-    add(0xE0U | code >> 12U);
-  } else {
-    add(0xF0U | code >> 18U);
-    add(0x80U | (code >> 12U & 0x3FU));
-  }
-  add(0x80U | (code >> 6U & 0x3FU));
-  add(0x80U | (code & 0x3FU));
-}
-
-constexpr const char* half_a_pair = "half of a pair of surrogates";
-
-}  // namespace
-
 std::optional<std::string> Utf16Decoder::add(std::string_view bytes, std::string& text) {
   for (const char c : bytes) {
     const auto byte = static_cast<unsigned char>(c);
@@ -172,36 +242,6 @@ std::optional<std::string> Utf16Decoder::finish() const {
   if (high_ != 0) return half_a_pair;
   return std::nullopt;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-/// How `text` ends, as a place in its file: `text` is UTF-8 up to there.
-Where end_of(std::string_view text, const std::string& name) {
-  const auto line = 1 + std::ranges::count(text, '\n');
-  const std::string_view last = text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
-  const auto column =
-      1 + std::ranges::count_if(last, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-  return {name, static_cast<int>(line), static_cast<int>(column)};
-}
-
-std::string from_utf16(std::string_view bytes, Utf16Decoder::ByteOrder order, const std::string& name) {
-  Utf16Decoder decoder(order);
-  std::string text;
-  auto fault = decoder.add(bytes, text);
-  if (!fault) fault = decoder.finish();
-  if (fault) throw Error(ErrorCode::input, end_of(text, name), "not UTF-16: " + *fault);
-  return text;
-}
-
-bool has_folder(const fs::path& path) {
-  const std::string whole = path.lexically_normal().string();
-  std::error_code fault;
-  return !whole.starts_with("/dev/") && !whole.starts_with("/proc/") && !fs::is_fifo(path, fault);
-}
-
-}  // namespace
 
 InputFile Input::file() const { return {path.string(), sha256(bytes)}; }
 std::string Input::text() const { return text_from(bytes, path.string()); }
@@ -270,32 +310,6 @@ std::string text_from(std::string bytes, const std::string& name) {
   }
   return bytes;
 }
-
-namespace {
-
-constexpr int most_names = 1000;  // of files that processes with this number left behind
-constexpr const char* writing = ".writing-";
-
-/// Of a writer of this path that was killed: nobody holds a lock on it.
-void remove_left_behind(const std::filesystem::path& path) {
-  const std::string begin = path.filename().string() + writing;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code fault;
-  for (std::filesystem::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
-    if (!entry->path().filename().string().starts_with(begin)) continue;
-    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) continue;
-    if (try_lock(descriptor) == Lock::taken && is_named(entry->path(), descriptor)) ::unlink(entry->path().c_str());
-    ::close(descriptor);
-  }
-}
-
-/// False if it was taken for one that was left behind.
-bool is_mine(const std::filesystem::path& path, int descriptor) {
-  return try_lock(descriptor) != Lock::of_another && is_named(path, descriptor);
-}
-
-}  // namespace
 
 bool is_written_directly(const std::filesystem::path& path) {
   std::error_code fault;
@@ -443,36 +457,6 @@ bool write_once(const std::filesystem::path& path, std::string_view text) {
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
   return read_input(path, max_bytes).bytes;
 }
-
-namespace {
-
-constexpr std::string_view before_digest = " #";
-
-std::string next_digest(const std::string& last, const std::string& text) {
-  constexpr std::size_t digits = 16;  // damage is to be told, not forgery
-  return sha256(last + text).substr(0, digits);
-}
-
-/// With its end of line.
-std::string sealed(std::string& last, const std::string& text) {
-  last = next_digest(last, text);
-  return text + std::string(before_digest) + last + '\n';
-}
-
-/// The text of the next line; none if it isn't what was written, or broke off.
-std::optional<std::string> next_text(std::istream& lines, std::string& last) {
-  std::string line;
-  if (!std::getline(lines, line) || lines.eof()) return std::nullopt;
-  const std::size_t at = line.rfind(before_digest);
-  if (at == std::string::npos) return std::nullopt;
-  std::string text = line.substr(0, at);
-  std::string digest = next_digest(last, text);
-  if (line.compare(at + before_digest.size(), std::string::npos, digest) != 0) return std::nullopt;
-  last = std::move(digest);
-  return text;
-}
-
-}  // namespace
 
 std::optional<Journal::Content> Journal::read(const std::filesystem::path& file) {
   std::ifstream lines(file, std::ios::binary);

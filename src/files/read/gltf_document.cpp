@@ -160,41 +160,6 @@ std::string label(const char* what, const std::string& name, int index) {
   return what + (name.empty() ? ' ' + std::to_string(index) : " '" + shortened(name) + "'");
 }
 
-}  // namespace
-
-GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) {
-  GltfContainer container = read_container(file);
-  const bool is_json = container.kind == GltfContainer::Kind::json;
-  GltfDocument document{
-      file.string(),
-      JsonText(file.string(), std::move(container.json), is_json ? JsonText::Places::known : JsonText::Places::unknown),
-      {},
-      {}};
-  Diagnostics faults;
-  if (!document.text.root().is_object()) faults.error(document.text.where(""), "glTF must be a JSON object");
-  faults.throw_if_errors();
-  check_asset(document.text, faults);
-  check_extensions(document.text, faults);
-  check_structure(document.text, faults);
-  faults.throw_if_errors();
-  auto buffers = read_buffers(document.text, container, folder_of_input(file), faults);
-  faults.throw_if_errors();
-  document.model = model_of(document.text.root());
-  document.files = std::move(container.files);
-  for (auto& bytes : buffers) document.model.buffers.emplace_back().data = std::move(bytes);
-  for (const Issue& warning : faults.warnings()) remarks.warning(warning.where, warning.message);
-  return document;
-}
-
-std::string node_label(const tinygltf::Model& model, int node) {
-  return label("node", model.nodes[static_cast<std::size_t>(node)].name, node);
-}
-std::string mesh_label(const tinygltf::Model& model, int mesh) {
-  return label("mesh", model.meshes[static_cast<std::size_t>(mesh)].name, mesh);
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t chunk_json = 0x4E4F534A;    // "JSON", glTF 2.0 section 4.4
@@ -298,60 +263,6 @@ std::vector<unsigned char> read_external(const std::string& uri, const fs::path&
   container.files.push_back(input.file());
   return {input.bytes.begin(), input.bytes.end()};
 }
-
-}  // namespace
-
-GltfContainer read_container(const fs::path& file) {
-  const Input input = read_input(file, largest_file);
-  const std::string& bytes = input.bytes;
-  if (bytes.empty()) throw Error(ErrorCode::input, {file.string()}, "the file is empty");
-  if (bytes.starts_with("glTF")) {
-    GltfContainer container = split_binary(bytes, file.string());
-    container.files = {input.file()};
-    return container;
-  }
-  if (!may_be_json(bytes)) {
-    const std::string kind = kind_of_text(bytes);
-    throw Error(ErrorCode::input, {file.string(), 1, 1},
-                "is neither glTF (.gltf, JSON) nor binary glTF (.glb)" + (kind.empty() ? kind : ", but " + kind));
-  }
-  return {GltfContainer::Kind::json, input.text(), {}, {input.file()}};
-}
-
-std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
-                                                     const fs::path& folder, Diagnostics& faults) {
-  std::vector<std::vector<unsigned char>> result;
-  const nlohmann::json none = nlohmann::json::array();
-  const auto found = text.root().find("buffers");
-  const nlohmann::json& buffers = found == text.root().end() ? none : *found;
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const std::string pointer = "/buffers/" + std::to_string(i);
-    std::vector<unsigned char>& bytes = result.emplace_back();
-    std::string fault;
-    if (!buffers[i].contains("uri")) {
-      if (i == 0 && container.kind == GltfContainer::Kind::binary) {
-        bytes = std::move(container.binary_chunk);
-      } else {
-        fault = "buffer " + std::to_string(i) + " has no 'uri'";
-      }
-    } else if (const auto uri = buffers[i]["uri"].get<std::string>(); uri.starts_with("data:")) {
-      std::string media_type;
-      if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) fault = "data: URI can't be decoded";
-    } else {
-      bytes = read_external(uri, folder, container, fault);
-    }
-    const auto wanted = buffers[i]["byteLength"].get<std::size_t>();
-    if (fault.empty() && bytes.size() < wanted) {
-      fault = "buffer " + std::to_string(i) + " is cut short: it has " + std::to_string(bytes.size()) + " of " +
-              std::to_string(wanted) + " bytes";
-    }
-    if (!fault.empty()) faults.error(text.where(pointer + (buffers[i].contains("uri") ? "/uri" : "")), fault);
-    if (bytes.size() > wanted) bytes.resize(wanted);
-  }
-  return result;
-}
-
-namespace {
 
 using nlohmann::json;
 
@@ -573,6 +484,87 @@ class StructureCheck {
 };
 
 }  // namespace
+
+GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) {
+  GltfContainer container = read_container(file);
+  const bool is_json = container.kind == GltfContainer::Kind::json;
+  GltfDocument document{
+      file.string(),
+      JsonText(file.string(), std::move(container.json), is_json ? JsonText::Places::known : JsonText::Places::unknown),
+      {},
+      {}};
+  Diagnostics faults;
+  if (!document.text.root().is_object()) faults.error(document.text.where(""), "glTF must be a JSON object");
+  faults.throw_if_errors();
+  check_asset(document.text, faults);
+  check_extensions(document.text, faults);
+  check_structure(document.text, faults);
+  faults.throw_if_errors();
+  auto buffers = read_buffers(document.text, container, folder_of_input(file), faults);
+  faults.throw_if_errors();
+  document.model = model_of(document.text.root());
+  document.files = std::move(container.files);
+  for (auto& bytes : buffers) document.model.buffers.emplace_back().data = std::move(bytes);
+  for (const Issue& warning : faults.warnings()) remarks.warning(warning.where, warning.message);
+  return document;
+}
+
+std::string node_label(const tinygltf::Model& model, int node) {
+  return label("node", model.nodes[static_cast<std::size_t>(node)].name, node);
+}
+std::string mesh_label(const tinygltf::Model& model, int mesh) {
+  return label("mesh", model.meshes[static_cast<std::size_t>(mesh)].name, mesh);
+}
+
+GltfContainer read_container(const fs::path& file) {
+  const Input input = read_input(file, largest_file);
+  const std::string& bytes = input.bytes;
+  if (bytes.empty()) throw Error(ErrorCode::input, {file.string()}, "the file is empty");
+  if (bytes.starts_with("glTF")) {
+    GltfContainer container = split_binary(bytes, file.string());
+    container.files = {input.file()};
+    return container;
+  }
+  if (!may_be_json(bytes)) {
+    const std::string kind = kind_of_text(bytes);
+    throw Error(ErrorCode::input, {file.string(), 1, 1},
+                "is neither glTF (.gltf, JSON) nor binary glTF (.glb)" + (kind.empty() ? kind : ", but " + kind));
+  }
+  return {GltfContainer::Kind::json, input.text(), {}, {input.file()}};
+}
+
+std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
+                                                     const fs::path& folder, Diagnostics& faults) {
+  std::vector<std::vector<unsigned char>> result;
+  const nlohmann::json none = nlohmann::json::array();
+  const auto found = text.root().find("buffers");
+  const nlohmann::json& buffers = found == text.root().end() ? none : *found;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    const std::string pointer = "/buffers/" + std::to_string(i);
+    std::vector<unsigned char>& bytes = result.emplace_back();
+    std::string fault;
+    if (!buffers[i].contains("uri")) {
+      if (i == 0 && container.kind == GltfContainer::Kind::binary) {
+        bytes = std::move(container.binary_chunk);
+      } else {
+        fault = "buffer " + std::to_string(i) + " has no 'uri'";
+      }
+    } else if (const auto uri = buffers[i]["uri"].get<std::string>(); uri.starts_with("data:")) {
+      std::string media_type;
+      if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) fault = "data: URI can't be decoded";
+    } else {
+      bytes = read_external(uri, folder, container, fault);
+    }
+    const auto wanted = buffers[i]["byteLength"].get<std::size_t>();
+    if (fault.empty() && bytes.size() < wanted) {
+      fault = "buffer " + std::to_string(i) + " is cut short: it has " + std::to_string(bytes.size()) + " of " +
+              std::to_string(wanted) + " bytes";
+    }
+    if (!fault.empty()) faults.error(text.where(pointer + (buffers[i].contains("uri") ? "/uri" : "")), fault);
+    if (bytes.size() > wanted) bytes.resize(wanted);
+  }
+  return result;
+}
 
 void check_structure(const JsonText& text, Diagnostics& faults) {
   StructureCheck check(text, faults);

@@ -129,26 +129,13 @@ std::string token_told(std::string_view text, std::size_t offset) {
 }
 
 /// Keeps what the parser says of the first fault, and nothing else.
-class FaultFinder : public nlohmann::json_sax<nlohmann::json> {
+class FaultFinder : public nlohmann::detail::json_sax_acceptor<nlohmann::json> {
  public:
   explicit FaultFinder(std::string_view text) : text_(text) {}
   [[nodiscard]] JsonFault fault() && { return std::move(fault_); }
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
-
   /// `n_read`: bytes up to the end of the token.
-  bool parse_error(std::size_t n_read, const std::string& token, const nlohmann::detail::exception& fault) override {
+  bool parse_error(std::size_t n_read, const std::string& token, const nlohmann::detail::exception& fault) {
     constexpr int number_too_large = 406;  // the library's documented id
     if (fault.id == number_too_large) {
       fault_.offset = n_read - std::min(n_read, token.size());

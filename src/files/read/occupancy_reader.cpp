@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -23,48 +24,13 @@
 #include "model/schema/limits.hpp"
 #include "pirsim/occupancy.hpp"
 
-// The tables behind an occupancy. Private to io.
+// The tables behind an occupancy. Each reader fills what was read of the file, or tells faults with their place in it,
+// each kind once.
 
 namespace pirsim::io {
-
-// Each fills what was read of the file, or tells faults with their place in it, each kind once.
-
-/// Numbers of people at moments.
-void read_counts(const CsvTable& table, CountsSpec& counts, Diagnostics& faults);
-/// Rows as `--occupants` writes them, to stays.
-void read_places(const CsvTable& table, PlacesSpec& places, Diagnostics& faults);
-/// Rows of tracked people.
-void read_positions(const CsvTable& table, PositionsSpec& positions, Diagnostics& faults);
-
-// What they share.
+namespace {
 
 /// A study's rows have many runs, and then time begins anew.
-void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults);
-
-/// By either name; both are a fault.
-[[nodiscard]] std::optional<std::size_t> column_called(const CsvTable& table, std::string_view name,
-                                                       std::string_view other, Diagnostics& faults);
-/// Columns of a person, and of where they are on the floor, if the table has them.
-struct PersonColumns {
-  PersonColumns(const CsvTable& table, Diagnostics& faults);
-  std::optional<std::size_t> id, x, z;
-};
-/// False, which is told, for a row of nobody.
-[[nodiscard]] bool names_somebody(const CsvTable& table, std::size_t row, const PersonColumns& columns,
-                                  RepeatedFaults& faults);
-/// None where the table doesn't say, and after a fault, which is told.
-[[nodiscard]] std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const PersonColumns& columns,
-                                           Diagnostics& faults);
-
-/// Data whose first moment is a clock's count from there.
-template <typename Shift>
-[[nodiscard]] std::string begin_of(const TimeColumn& time, double first_s, const Shift& shift) {
-  if (!time.is_clock()) return {};
-  const RunClock begin{std::llround(first_s)};
-  shift(-static_cast<double>(begin.begin_s));
-  return begin.text(0.0);
-}
-
 void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults) {
   for (const std::string_view name :
        {std::string_view("replicate"), std::string_view("trial"), room_column.name, day_column.name}) {
@@ -79,6 +45,7 @@ void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaul
   }
 }
 
+/// By either name; both are a fault.
 std::optional<std::size_t> column_called(const CsvTable& table, std::string_view name, std::string_view other,
                                          Diagnostics& faults) {
   const auto by_name = table.column(name), by_other = table.column(other);
@@ -88,19 +55,25 @@ std::optional<std::size_t> column_called(const CsvTable& table, std::string_view
   return by_name ? by_name : by_other;
 }
 
-PersonColumns::PersonColumns(const CsvTable& table, Diagnostics& faults)
-    : id(column_called(table, "person", "id", faults)),
-      x(column_called(table, "x_m", "x", faults)),
-      z(column_called(table, "z_m", "z", faults)) {
-  if (!id) id = table.required_column("person", faults);
-}
+/// Columns of a person, and of where they are on the floor, if the table has them.
+struct PersonColumns {
+  PersonColumns(const CsvTable& table, Diagnostics& faults)
+      : id(column_called(table, "person", "id", faults)),
+        x(column_called(table, "x_m", "x", faults)),
+        z(column_called(table, "z_m", "z", faults)) {
+    if (!id) id = table.required_column("person", faults);
+  }
+  std::optional<std::size_t> id, x, z;
+};
 
+/// False, which is told, for a row of nobody.
 bool names_somebody(const CsvTable& table, std::size_t row, const PersonColumns& columns, RepeatedFaults& faults) {
   if (!table.text(row, *columns.id).empty()) return true;
   faults.add("nobody", table.where(row, *columns.id), table.names()[*columns.id] + ": expected a name");
   return false;
 }
 
+/// None where the table doesn't say, and after a fault, which is told.
 std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const PersonColumns& columns,
                              Diagnostics& faults) {
   if (!columns.x || !columns.z) return std::nullopt;
@@ -119,8 +92,16 @@ std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const Perso
   return point;
 }
 
-namespace {
+/// Data whose first moment is a clock's count from there.
+template <typename Shift>
+std::string begin_of(const TimeColumn& time, double first_s, const Shift& shift) {
+  if (!time.is_clock()) return {};
+  const RunClock begin{std::llround(first_s)};
+  shift(-static_cast<double>(begin.begin_s));
+  return begin.text(0.0);
+}
 
+/// Numbers of people at moments.
 class CountsReader {
  public:
   CountsReader(const CsvTable& table, CountsSpec& counts, Diagnostics& faults)
@@ -148,10 +129,10 @@ class CountsReader {
     repeated_.tell(faults_);
     if (counts_.times_s.empty() && !faults_.has_errors())
       faults_.error(table_.header_place(), "expected at least one reading");
-    if (!time.is_clock() || counts_.times_s.empty()) return;
-    const RunClock begin{std::llround(counts_.times_s.front())};
-    counts_.begin = begin.text(0.0);
-    for (double& seconds : counts_.times_s) seconds -= static_cast<double>(begin.begin_s);
+    if (counts_.times_s.empty()) return;
+    counts_.begin = begin_of(time, counts_.times_s.front(), [&](double by_s) {
+      for (double& seconds : counts_.times_s) seconds += by_s;
+    });
   }
 
  private:
@@ -161,12 +142,9 @@ class CountsReader {
       if (const auto column = table_.column(name)) return column;
     }
     if (!counts_.areas.empty()) return std::nullopt;  // all are in areas
-    std::string names;
-    for (const std::string& name : table_.names()) names += (names.empty() ? "" : ", ") + name;
     faults_.error(table_.header_place(),
-                  "which column tells the number of people? Say `people: COLUMN` in the script; "
-                  "there are " +
-                      names);
+                  "which column tells the number of people? Say `people: COLUMN` in the script; there are " +
+                      joined(table_.names(), ", "));
     return std::nullopt;
   }
 
@@ -233,92 +211,7 @@ class CountsReader {
   ReadCounts last_;
 };
 
-}  // namespace
-
-void read_counts(const CsvTable& table, CountsSpec& counts, Diagnostics& faults) {
-  CountsReader(table, counts, faults).read();
-}
-
-namespace {
-
-/// The table, or none after a fault.
-std::optional<CsvTable> read_table(const std::string& file, const detail::FilesBeside& beside, const Where& where,
-                                   std::vector<InputFile>& files, Diagnostics& faults) {
-  const NamedFile named = beside.find(file, DataKind::measured);
-  if (!named.fault.empty()) {
-    faults.error(where, "occupancy: " + named.fault);
-    return std::nullopt;
-  }
-  try {
-    Input input = read_input(named.path);
-    files.push_back(input.file());
-    return CsvTable::parse(decompressed(std::move(input), max_text_file_bytes), named.path.string());
-  } catch (const Error& fault) {
-    for (const Issue& issue : fault.issues()) faults.error(issue.where, issue.message);
-  }
-  return std::nullopt;
-}
-
-/// `areas: {kitchen: people_kitchen}`; their numbers come with the table.
-void read_areas(YamlMap& map, CountsSpec& counts) {
-  const auto node = map.child("areas");
-  if (!node) return;
-  const std::vector<YamlKey> keys = node->keys();
-  const std::vector<YamlNode> columns = node->items();
-  if (keys.empty())
-    map.faults().error(node->where(), map.label("areas") + ": expected each area's column, {kitchen: people_kitchen}");
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    counts.areas.push_back({keys[i].name, columns[i].text(map.faults(), map.label("areas") + '.' + keys[i].name), {}});
-}
-
-}  // namespace
-
-namespace detail {
-
-std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>& node, const std::string& begin,
-                                                   Diagnostics& faults) {
-  if (!node) return std::nullopt;
-  Diagnostics found;
-  YamlMap map(*node, found, "occupancy");
-  OccupancySpec spec;
-  spec.where = node->where();
-  read_fields(map, spec);
-  if (map.child("counts")) {
-    CountsSpec& counts = spec.counts.emplace();
-    counts.file = map.required_text("counts");
-    counts.time = map.text("time");
-    counts.column = map.text("people");
-    read_areas(map, counts);
-    if (const auto table = read_table(counts.file, beside_, map.where("counts"), files_, found))
-      read_counts(*table, counts, found);
-  }
-  if (map.child("places")) {
-    PlacesSpec& places = spec.places.emplace();
-    places.file = map.required_text("places");
-    if (const auto table = read_table(places.file, beside_, map.where("places"), files_, found))
-      read_places(*table, places, found);
-  }
-  if (map.child("positions")) {
-    PositionsSpec& positions = spec.positions.emplace();
-    positions.file = map.required_text("positions");
-    if (const auto table = read_table(positions.file, beside_, map.where("positions"), files_, found))
-      read_positions(*table, positions, found);
-  }
-  map.finish();
-  if (!found.has_errors()) {
-    check_together(spec, begin, [&](std::string_view field, const std::string& message) {
-      if (field.ends_with("_h")) field.remove_suffix(2);
-      found.error(map.where(std::string(field)), "occupancy: " + message);
-    });
-  }
-  for (const Issue& issue : found.issues()) faults.error(issue.where, issue.message);
-  return spec;
-}
-
-}  // namespace detail
-
-namespace {
-
+/// Rows as `--occupants` writes them, to stays.
 class PlacesReader {
  public:
   PlacesReader(const CsvTable& table, PlacesSpec& places, Diagnostics& faults)
@@ -436,14 +329,7 @@ class PlacesReader {
   double step_s_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace
-
-void read_places(const CsvTable& table, PlacesSpec& places, Diagnostics& faults) {
-  PlacesReader(table, places, faults).read();
-}
-
-namespace {
-
+/// Rows of tracked people.
 class PositionsReader {
  public:
   PositionsReader(const CsvTable& table, PositionsSpec& positions, Diagnostics& faults)
@@ -510,10 +396,70 @@ class PositionsReader {
   std::map<std::string, std::size_t> known_;
 };
 
-}  // namespace
-
-void read_positions(const CsvTable& table, PositionsSpec& positions, Diagnostics& faults) {
-  PositionsReader(table, positions, faults).read();
+template <typename Part>
+void read_table(const std::string& file, const detail::FilesBeside& beside, const Where& where,
+                std::vector<InputFile>& files, Diagnostics& faults, Part& part) {
+  const NamedFile named = beside.find(file, DataKind::measured);
+  if (!named.fault.empty()) return faults.error(where, "occupancy: " + named.fault);
+  try {
+    Input input = read_input(named.path);
+    files.push_back(input.file());
+    const CsvTable table = CsvTable::parse(decompressed(std::move(input), max_text_file_bytes), named.path.string());
+    if constexpr (std::same_as<Part, CountsSpec>) CountsReader(table, part, faults).read();
+    if constexpr (std::same_as<Part, PlacesSpec>) PlacesReader(table, part, faults).read();
+    if constexpr (std::same_as<Part, PositionsSpec>) PositionsReader(table, part, faults).read();
+  } catch (const Error& fault) {
+    for (const Issue& issue : fault.issues()) faults.error(issue.where, issue.message);
+  }
 }
 
+/// `areas: {kitchen: people_kitchen}`; their numbers come with the table.
+void read_areas(YamlMap& map, CountsSpec& counts) {
+  const auto node = map.child("areas");
+  if (!node) return;
+  const std::vector<YamlKey> keys = node->keys();
+  const std::vector<YamlNode> columns = node->items();
+  if (keys.empty())
+    map.faults().error(node->where(), map.label("areas") + ": expected each area's column, {kitchen: people_kitchen}");
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    counts.areas.push_back({keys[i].name, columns[i].text(map.faults(), map.label("areas") + '.' + keys[i].name), {}});
+}
+
+}  // namespace
+
+namespace detail {
+
+std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>& node, const std::string& begin,
+                                                   Diagnostics& faults) {
+  if (!node) return std::nullopt;
+  Diagnostics found;
+  YamlMap map(*node, found, "occupancy");
+  OccupancySpec spec;
+  spec.where = node->where();
+  read_fields(map, spec);
+  const auto file_of = [&](const std::string& key, auto& part, const auto& also) {
+    if (!map.child(key)) return;
+    part.emplace().file = map.required_text(key);
+    also();
+    read_table(part->file, beside_, map.where(key), files_, found, *part);
+  };
+  file_of("counts", spec.counts, [&] {
+    spec.counts->time = map.text("time");
+    spec.counts->column = map.text("people");
+    read_areas(map, *spec.counts);
+  });
+  file_of("places", spec.places, [] {});
+  file_of("positions", spec.positions, [] {});
+  map.finish();
+  if (!found.has_errors()) {
+    check_together(spec, begin, [&](std::string_view field, const std::string& message) {
+      if (field.ends_with("_h")) field.remove_suffix(2);
+      found.error(map.where(std::string(field)), "occupancy: " + message);
+    });
+  }
+  for (const Issue& issue : found.issues()) faults.error(issue.where, issue.message);
+  return spec;
+}
+
+}  // namespace detail
 }  // namespace pirsim::io

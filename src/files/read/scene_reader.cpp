@@ -173,10 +173,20 @@ class SceneBuilder {
   }
   void add_mark(const PlacedNode& placed, const Markup& markup) {
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) add_sensor(placed, *sensor);
-    if (const auto* seat = std::get_if<SeatSpec>(&markup)) add_seat(placed, *seat);
-    if (const auto* place = std::get_if<PlaceSpec>(&markup)) add_place(placed, *place);
-    if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) add_entrance(placed, *entrance);
-    if (const auto* door = std::get_if<DoorSpec>(&markup)) add_door(placed, *door);
+    if (const auto* seat = std::get_if<SeatSpec>(&markup)) {
+      add_upright(placed, *seat, &SeatSpec::world_from_seat, "seat", "seats", limits::seats, spec_.seats, nodes_.seats);
+    }
+    if (const auto* place = std::get_if<PlaceSpec>(&markup)) {  // a seat is a place, and scripts name either
+      add_upright(placed, *place, &PlaceSpec::world_from_place, "seat", "places", limits::places, spec_.places,
+                  nodes_.places);
+    }
+    if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) {
+      add_upright(placed, *entrance, &EntranceSpec::world_from_entrance, "entrance", "entrances", limits::entrances,
+                  spec_.entrances, nodes_.entrances);
+    }
+    if (const auto* door = std::get_if<DoorSpec>(&markup)) {
+      add_upright(placed, *door, &DoorSpec::world_from_door, "door", "doors", limits::doors, spec_.doors, nodes_.doors);
+    }
     if (const auto* outline = outlined(&markup)) add_outlined(placed, *outline, markup);
   }
   /// What the marks file places in the room.
@@ -252,33 +262,15 @@ class SceneBuilder {
     sensor.world_from_sensor = rigid_frame(placed.world_from_node);
     spec_.sensors.push_back(std::move(sensor));
   }
-  void add_seat(const PlacedNode& placed, SeatSpec seat) {
-    if (!has_room(spec_.seats.size(), limits::seats, "seats")) return;
-    check_unique("seat", seat.id, placed.node);
-    nodes_.seats.push_back(placed.node);
-    seat.world_from_seat = upright_frame(placed);
-    spec_.seats.push_back(std::move(seat));
-  }
-  void add_place(const PlacedNode& placed, PlaceSpec place) {
-    if (!has_room(spec_.places.size(), limits::places, "places")) return;
-    check_unique("seat", place.id, placed.node);  // a seat is a place, and scripts name either
-    nodes_.places.push_back(placed.node);
-    place.world_from_place = upright_frame(placed);
-    spec_.places.push_back(std::move(place));
-  }
-  void add_entrance(const PlacedNode& placed, EntranceSpec entrance) {
-    if (!has_room(spec_.entrances.size(), limits::entrances, "entrances")) return;
-    check_unique("entrance", entrance.id, placed.node);
-    nodes_.entrances.push_back(placed.node);
-    entrance.world_from_entrance = upright_frame(placed);
-    spec_.entrances.push_back(std::move(entrance));
-  }
-  void add_door(const PlacedNode& placed, DoorSpec door) {
-    if (!has_room(spec_.doors.size(), limits::doors, "doors")) return;
-    check_unique("door", door.id, placed.node);
-    nodes_.doors.push_back(placed.node);
-    door.world_from_door = upright_frame(placed);
-    spec_.doors.push_back(std::move(door));
+  /// What stands at its node. type: of its id; plural: for messages.
+  template <typename Spec>
+  void add_upright(const PlacedNode& placed, Spec spec, Frame Spec::*frame, const char* type, const char* plural,
+                   std::size_t most, std::vector<Spec>& all, std::vector<int>& bearers) {
+    if (!has_room(all.size(), most, plural)) return;
+    check_unique(type, spec.id, placed.node);
+    bearers.push_back(placed.node);
+    spec.*frame = upright_frame(placed);
+    all.push_back(std::move(spec));
   }
   /// Counts it; its mesh, if it has no polygon, is added with the others.
   void add_outlined(const PlacedNode& placed, const mark::Outlined& outline, const Markup& markup) {

@@ -263,59 +263,6 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const detail
   return script;
 }
 
-}  // namespace
-
-ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides,
-                       std::span<const std::filesystem::path> data_directories) {
-  const Input input = read_input(file);
-  ScriptSpec script =
-      script_of(YamlNode::load(input, overrides), stem_of_input(file), {folder_of_input(file), data_directories});
-  script.files.insert(script.files.begin(), input.file());
-  return script;
-}
-
-ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides,
-                        std::span<const std::filesystem::path> data_directories) {
-  return script_of(YamlNode::parse(text, name, overrides), stem_of_input(name),
-                   {folder_of_input(name), data_directories});
-}
-
-void check_version(YamlMap& map, const std::string& key) {
-  constexpr int format_version = 1;
-  refuse_other_kinds(map, key);
-  const std::size_t n_told = map.faults().issues().size();
-  const int version = map.required_integer(key);
-  if (map.faults().issues().size() != n_told || version == format_version) return;
-  map.faults().error(map.where(key), "format version " + std::to_string(version) +
-                                         " isn't known: this pirsim reads version " + std::to_string(format_version));
-}
-
-double read_hours(YamlMap& map, const std::string& key, double otherwise) {
-  const std::string text = map.text(key);
-  constexpr std::size_t to_minutes = 5;
-  const auto hours = text.size() <= to_minutes ? clock_hours(text) : std::nullopt;
-  if (!hours) map.faults().error(map.where(key), key + ": expected a time of day from 00:00 to 24:00, e.g. 08:30");
-  return hours.value_or(otherwise);
-}
-
-SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults) {
-  SensingSpec sensing;
-  if (!node) return sensing;
-  YamlMap map(*node, faults, "sensing");
-  read_fields(map, sensing);
-  const double window_s = map.number("window_s", 1.0, accepted::window_s);
-  const double ticks = window_s * sensing.tick_rate_hz;
-  if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
-    faults.error(map.where("window_s"),
-                 "window_s: expected a whole number of ticks of 1/" + std::to_string(sensing.tick_rate_hz) + " s");
-  }
-  sensing.ticks_per_window = static_cast<int>(std::lround(ticks));
-  map.finish();
-  return sensing;
-}
-
-namespace {
-
 /// Then the value is a name, and may look like a number: `sensor: 1`.
 bool is_choice(const std::string& effect, const std::string& setting) {
   const std::vector<effects::EffectInfo> known = effects::list();
@@ -335,37 +282,6 @@ void read_setting(const YamlKey& key, const YamlNode& value, EffectSpec& effect,
     effect.choices[key.name] = text;
   }
 }
-
-}  // namespace
-
-std::vector<EffectSpec> read_effects(const std::vector<YamlNode>& items, Diagnostics& faults) {
-  std::vector<EffectSpec> effects;
-  for (const YamlNode& item : items) {
-    EffectSpec& effect = effects.emplace_back();
-    effect.where = item.where();
-    if (item.is_scalar()) {
-      effect.name = item.text(faults, "effect");
-      continue;
-    }
-    const std::vector<YamlKey> names = item.keys();
-    if (names.size() != 1) {
-      faults.error(item.where(), "one effect per entry, as `- dead_time: {dead_s: 2}`");
-      continue;
-    }
-    effect.name = names[0].name;
-    effect.where = names[0].where;
-    const YamlNode settings = item.items()[0];
-    if (!settings.is_map() && !settings.is_null()) {
-      faults.error(settings.where(), effect.name + ": expected parameters by name");
-    }
-    const std::vector<YamlKey> keys = settings.keys();
-    const std::vector<YamlNode> values = settings.items();
-    for (std::size_t i = 0; i < keys.size(); ++i) read_setting(keys[i], values[i], effect, faults);
-  }
-  return effects;
-}
-
-namespace {
 
 StaffSpec read_staff(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "staff");
@@ -438,55 +354,6 @@ HouseholdSpec read_household(const YamlNode& node, Diagnostics& faults) {
   return household;
 }
 
-}  // namespace
-
-std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults) {
-  if (!node) return std::nullopt;
-  YamlMap map(*node, faults, "schedule");
-  ScheduleSpec spec;
-  spec.where = node->where();
-  spec.first_day = map.text("first_day", spec.first_day);
-  read_fields(map, spec);
-  for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
-  if (const auto child = map.child("meetings")) {
-    const std::vector<YamlNode> rooms =
-        child->is_map() ? std::vector{*child} : map.list("meetings", limits::list_entries);
-    for (const YamlNode& room : rooms) spec.meetings.push_back(read_meetings(room, faults));
-  }
-  if (const auto child = map.child("household")) {
-    spec.household = read_household(*child, faults);
-    if (!map.has("from")) spec.from_h = home_from_h;
-    if (!map.has("to")) spec.to_h = home_to_h;
-  }
-  read_part(map, "arrival", spec.arrival);
-  read_part(map, "departure", spec.departure);
-  read_part(map, "lunch", spec.lunch);
-  check_together(spec, [&](std::string_view field, const std::string& message) {
-    const bool is_date = field == "first_day";
-    faults.error(map.where(time_key_of(field)), is_date ? message : "schedule: " + message);
-  });
-  map.finish();
-  return spec;
-}
-
-ScriptTime time_of(const ScriptSpec& script, const TrialSpec& trial, const Diagnostics& faults) {
-  constexpr RunClock any{};  // where it isn't understood, so that no second fault follows
-  const bool is_sound = !faults.has_errors();
-  if (trial.schedule) {
-    const double day_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
-    return {is_sound ? clock_of(script, trial) : any, day_s};
-  }
-  if (trial.occupancy) {
-    if (!is_sound) return {any};
-    const OccupancyRuns runs = runs_of(*trial.occupancy, script.begin);
-    return {runs.clock, has_days(*trial.occupancy) ? std::optional(runs.duration_s) : std::nullopt};
-  }
-  if (script.begin.empty()) return {};
-  return {clock_from(script.begin).value_or(any)};
-}
-
-namespace {
-
 Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what) {
   const std::vector<double> xz = read_numbers(node, faults, what, accepted::on_floor_m);
   if (xz.size() == 2) return {xz[0], xz[1]};
@@ -494,22 +361,24 @@ Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what
   return Vec2(0.0);
 }
 
-Action read_wait_s(const YamlNode& node, Diagnostics& faults) {
+enum class Form { scalar, map, either };
+
+struct ActionKind {
+  const char* key;
+  Action (*read)(const YamlNode&, const ActionKind&, Diagnostics&);
+  Form form;
+  const char* example;
+  const char* required = nullptr;  ///< a key of the map
+};
+
+Action read_wait_s(const YamlNode& node, const ActionKind&, Diagnostics& faults) {
   action::Wait wait;
   each_number(wait, [&](const char*, double& value, const NumberRange& range) {
     value = node.number(faults, "wait_s", range);
   });
   return wait;
 }
-Action read_wait(const YamlNode& node, Diagnostics& faults) {
-  YamlMap map(node, faults, "wait");
-  action::Wait wait;
-  map.require("duration_s");
-  read_fields(map, wait);
-  map.finish();
-  return wait;
-}
-Action read_appear(const YamlNode& node, Diagnostics& faults) {
+Action read_appear(const YamlNode& node, const ActionKind&, Diagnostics& faults) {
   action::Appear appear;
   if (!node.is_map()) {
     appear.place = node.text(faults, "appear");
@@ -527,8 +396,7 @@ Action read_appear(const YamlNode& node, Diagnostics& faults) {
   map.finish();
   return appear;
 }
-Action read_enter(const YamlNode& node, Diagnostics& faults) { return action::Enter{node.text(faults, "enter")}; }
-Action read_walk(const YamlNode& node, Diagnostics& faults) {
+Action read_walk(const YamlNode& node, const ActionKind&, Diagnostics& faults) {
   YamlMap map(node, faults, "walk");
   action::Walk walk;
   for (const YamlNode& point : map.required_list("to_xz_m", limits::walk_points))
@@ -537,55 +405,35 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   map.finish();
   return walk;
 }
-Action read_sit(const YamlNode& node, Diagnostics& faults) {
-  if (!node.is_map()) return action::Sit{node.text(faults, "sit")};
-  YamlMap map(node, faults, "sit");
-  action::Sit sit;
-  sit.seat = map.required_text("seat");
-  read_fields(map, sit);
-  map.finish();
-  return sit;
+Action read_rise(const YamlNode& node, const ActionKind&, Diagnostics& faults) {
+  if (!node.is_null() && !node.is_scalar()) faults.error(node.where(), "rise: expected nothing");
+  return action::Rise{};
 }
-/// Of who goes to a place: its name, or a map with more.
+/// A map of fields.
 template <typename What>
-Action read_place(const YamlNode& node, Diagnostics& faults, const char* name) {
+Action read_map(const YamlNode& node, const ActionKind& kind, Diagnostics& faults) {
+  YamlMap map(node, faults, kind.key);
   What what;
-  if (!node.is_map()) {
-    what.place = node.text(faults, name);
-    return what;
-  }
-  YamlMap map(node, faults, name);
-  what.place = map.required_text("place");
+  if (kind.required != nullptr) map.require(kind.required);
   read_fields(map, what);
   map.finish();
   return what;
 }
-Action read_lie(const YamlNode& node, Diagnostics& faults) { return read_place<action::Lie>(node, faults, "lie"); }
-Action read_stand(const YamlNode& node, Diagnostics& faults) {
-  return read_place<action::Stand>(node, faults, "stand");
-}
-Action read_work(const YamlNode& node, Diagnostics& faults) {
-  YamlMap map(node, faults, "work");
-  action::Work work;
-  read_fields(map, work);
+/// The name of an entrance, a seat or a place, or a map with more; kind.required is the name's key there.
+template <typename What, std::string What::*name>
+Action read_name(const YamlNode& node, const ActionKind& kind, Diagnostics& faults) {
+  What what;
+  if (kind.required == nullptr || !node.is_map()) {
+    what.*name = node.text(faults, kind.key);
+    return what;
+  }
+  YamlMap map(node, faults, kind.key);
+  what.*name = map.required_text(kind.required);
+  read_fields(map, what);
   map.finish();
-  return work;
+  return what;
 }
-Action read_rise(const YamlNode& node, Diagnostics& faults) {
-  if (!node.is_null() && !node.is_scalar()) faults.error(node.where(), "rise: expected nothing");
-  return action::Rise{};
-}
-Action read_turn(const YamlNode& node, Diagnostics& faults) {
-  YamlMap map(node, faults, "turn");
-  action::Turn turn;
-  map.require("heading_deg");
-  read_numbers(map, turn);
-  map.finish();
-  return turn;
-}
-Action read_leave(const YamlNode& node, Diagnostics& faults) { return action::Leave{node.text(faults, "leave")}; }
-
-Action read_follow(const YamlNode& node, Diagnostics& faults) {
+Action read_follow(const YamlNode& node, const ActionKind&, Diagnostics& faults) {
   YamlMap map(node, faults, "follow");
   action::Follow follow;
   for (const YamlNode& row : map.required_list("t_x_z", limits::walk_points)) {
@@ -604,33 +452,25 @@ Action read_follow(const YamlNode& node, Diagnostics& faults) {
   return follow;
 }
 
-enum class Form { scalar, map, either };
-
-struct ActionKind {
-  const char* key;
-  Action (*read)(const YamlNode&, Diagnostics&);
-  Form form;
-  const char* example;
-};
 constexpr std::array<ActionKind, 13> action_kinds{
     {{"wait_s", read_wait_s, Form::scalar, "{wait_s: 60}"},
-     {"wait", read_wait, Form::map, "{wait: {duration_s: 60}}"},
+     {"wait", read_map<action::Wait>, Form::map, "{wait: {duration_s: 60}}", "duration_s"},
      {"appear", read_appear, Form::either, "{appear: bed}"},
-     {"enter", read_enter, Form::scalar, "{enter: door, at: \"09:00\"}"},
+     {"enter", read_name<action::Enter, &action::Enter::entrance>, Form::scalar, "{enter: door, at: \"09:00\"}"},
      {"walk", read_walk, Form::map, "{walk: {to_xz_m: [[1, -2], [3, -2]]}}"},
-     {"sit", read_sit, Form::either, "{sit: S1, at: \"09:00\"}"},
-     {"lie", read_lie, Form::either, "{lie: bed, at: \"23:00\"}"},
-     {"stand", read_stand, Form::either, "{stand: stove, at: \"12:00\"}"},
-     {"work", read_work, Form::map, "{work: {duration_s: 180}}"},
+     {"sit", read_name<action::Sit, &action::Sit::seat>, Form::either, "{sit: S1, at: \"09:00\"}", "seat"},
+     {"lie", read_name<action::Lie, &action::Lie::place>, Form::either, "{lie: bed, at: \"23:00\"}", "place"},
+     {"stand", read_name<action::Stand, &action::Stand::place>, Form::either, "{stand: stove, at: \"12:00\"}", "place"},
+     {"work", read_map<action::Work>, Form::map, "{work: {duration_s: 180}}"},
      {"rise", read_rise, Form::scalar, "{rise: , at: \"10:00\"}"},
-     {"turn", read_turn, Form::map, "{turn: {heading_deg: 90}}"},
-     {"leave", read_leave, Form::scalar, "{leave: door, at: \"17:00\"}"},
+     {"turn", read_map<action::Turn>, Form::map, "{turn: {heading_deg: 90}}", "heading_deg"},
+     {"leave", read_name<action::Leave, &action::Leave::entrance>, Form::scalar, "{leave: door, at: \"17:00\"}"},
      {"follow", read_follow, Form::map, "{follow: {t_x_z: [[0, 1, -2], [5, 3, -2]]}}"}}};
 
 /// A value of another form than the action takes is told with an example.
 Action read_value(const ActionKind& kind, const YamlNode& value, Diagnostics& faults) {
   Diagnostics told;
-  Action action = kind.read(value, told);
+  Action action = kind.read(value, kind, told);
   const bool fits = (value.is_map() && kind.form != Form::scalar) || (value.is_scalar() && kind.form != Form::map);
   for (const Issue& issue : told.issues()) {
     const bool is_of_form = !fits && issue.where == value.where();
@@ -716,6 +556,127 @@ ScriptedAction read_action_map(const YamlNode& node, const ScriptTime& time, Dia
 }
 
 }  // namespace
+
+ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides,
+                       std::span<const std::filesystem::path> data_directories) {
+  const Input input = read_input(file);
+  ScriptSpec script =
+      script_of(YamlNode::load(input, overrides), stem_of_input(file), {folder_of_input(file), data_directories});
+  script.files.insert(script.files.begin(), input.file());
+  return script;
+}
+
+ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides,
+                        std::span<const std::filesystem::path> data_directories) {
+  return script_of(YamlNode::parse(text, name, overrides), stem_of_input(name),
+                   {folder_of_input(name), data_directories});
+}
+
+void check_version(YamlMap& map, const std::string& key) {
+  constexpr int format_version = 1;
+  refuse_other_kinds(map, key);
+  const std::size_t n_told = map.faults().issues().size();
+  const int version = map.required_integer(key);
+  if (map.faults().issues().size() != n_told || version == format_version) return;
+  map.faults().error(map.where(key), "format version " + std::to_string(version) +
+                                         " isn't known: this pirsim reads version " + std::to_string(format_version));
+}
+
+double read_hours(YamlMap& map, const std::string& key, double otherwise) {
+  const std::string text = map.text(key);
+  constexpr std::size_t to_minutes = 5;
+  const auto hours = text.size() <= to_minutes ? clock_hours(text) : std::nullopt;
+  if (!hours) map.faults().error(map.where(key), key + ": expected a time of day from 00:00 to 24:00, e.g. 08:30");
+  return hours.value_or(otherwise);
+}
+
+SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  SensingSpec sensing;
+  if (!node) return sensing;
+  YamlMap map(*node, faults, "sensing");
+  read_fields(map, sensing);
+  const double window_s = map.number("window_s", 1.0, accepted::window_s);
+  const double ticks = window_s * sensing.tick_rate_hz;
+  if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
+    faults.error(map.where("window_s"),
+                 "window_s: expected a whole number of ticks of 1/" + std::to_string(sensing.tick_rate_hz) + " s");
+  }
+  sensing.ticks_per_window = static_cast<int>(std::lround(ticks));
+  map.finish();
+  return sensing;
+}
+
+std::vector<EffectSpec> read_effects(const std::vector<YamlNode>& items, Diagnostics& faults) {
+  std::vector<EffectSpec> effects;
+  for (const YamlNode& item : items) {
+    EffectSpec& effect = effects.emplace_back();
+    effect.where = item.where();
+    if (item.is_scalar()) {
+      effect.name = item.text(faults, "effect");
+      continue;
+    }
+    const std::vector<YamlKey> names = item.keys();
+    if (names.size() != 1) {
+      faults.error(item.where(), "one effect per entry, as `- dead_time: {dead_s: 2}`");
+      continue;
+    }
+    effect.name = names[0].name;
+    effect.where = names[0].where;
+    const YamlNode settings = item.items()[0];
+    if (!settings.is_map() && !settings.is_null()) {
+      faults.error(settings.where(), effect.name + ": expected parameters by name");
+    }
+    const std::vector<YamlKey> keys = settings.keys();
+    const std::vector<YamlNode> values = settings.items();
+    for (std::size_t i = 0; i < keys.size(); ++i) read_setting(keys[i], values[i], effect, faults);
+  }
+  return effects;
+}
+
+std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  if (!node) return std::nullopt;
+  YamlMap map(*node, faults, "schedule");
+  ScheduleSpec spec;
+  spec.where = node->where();
+  spec.first_day = map.text("first_day", spec.first_day);
+  read_fields(map, spec);
+  for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
+  if (const auto child = map.child("meetings")) {
+    const std::vector<YamlNode> rooms =
+        child->is_map() ? std::vector{*child} : map.list("meetings", limits::list_entries);
+    for (const YamlNode& room : rooms) spec.meetings.push_back(read_meetings(room, faults));
+  }
+  if (const auto child = map.child("household")) {
+    spec.household = read_household(*child, faults);
+    if (!map.has("from")) spec.from_h = home_from_h;
+    if (!map.has("to")) spec.to_h = home_to_h;
+  }
+  read_part(map, "arrival", spec.arrival);
+  read_part(map, "departure", spec.departure);
+  read_part(map, "lunch", spec.lunch);
+  check_together(spec, [&](std::string_view field, const std::string& message) {
+    const bool is_date = field == "first_day";
+    faults.error(map.where(time_key_of(field)), is_date ? message : "schedule: " + message);
+  });
+  map.finish();
+  return spec;
+}
+
+ScriptTime time_of(const ScriptSpec& script, const TrialSpec& trial, const Diagnostics& faults) {
+  constexpr RunClock any{};  // where it isn't understood, so that no second fault follows
+  const bool is_sound = !faults.has_errors();
+  if (trial.schedule) {
+    const double day_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
+    return {is_sound ? clock_of(script, trial) : any, day_s};
+  }
+  if (trial.occupancy) {
+    if (!is_sound) return {any};
+    const OccupancyRuns runs = runs_of(*trial.occupancy, script.begin);
+    return {runs.clock, has_days(*trial.occupancy) ? std::optional(runs.duration_s) : std::nullopt};
+  }
+  if (script.begin.empty()) return {};
+  return {clock_from(script.begin).value_or(any)};
+}
 
 ScriptedAction read_action(const YamlNode& node, const ScriptTime& time, Diagnostics& faults) {
   if (!node.is_scalar()) return read_action_map(node, time, faults);

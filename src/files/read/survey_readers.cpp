@@ -88,20 +88,6 @@ void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   spec.effects = read_survey_effects(map);
 }
 
-}  // namespace
-
-CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return read_versioned(YamlNode::load(read_input(file), overrides), "coverage study", "pirsim_coverage",
-                        [&](YamlMap& map) {
-                          CoverageSpec spec;
-                          spec.name = map.text("name", stem_of_input(file));
-                          read_coverage_keys(map, spec);
-                          return spec;
-                        });
-}
-
-namespace {
-
 Vec3 read_point(YamlMap& map, const std::string& key) {
   const std::vector<double> p = map.required_numbers(key, 3, {.min = -1e4, .max = 1e4});
   return {p[0], p[1], p[2]};
@@ -179,54 +165,6 @@ PlacementLightSpec read_light(const YamlNode& node, const detail::FilesBeside& b
   return light;
 }
 
-}  // namespace
-
-PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides,
-                              std::span<const std::filesystem::path> data_directories) {
-  return read_versioned(
-      YamlNode::load(read_input(file), overrides), "placement study", "pirsim_placements", [&](YamlMap& map) {
-        PlacementSpec spec;
-        spec.coverage.name = map.text("name", stem_of_input(file));
-        read_coverage_keys(map, spec.coverage);
-        std::set<std::string> ids;
-        for (const YamlNode& set : map.list("sets")) {
-          spec.sets.push_back(read_set(set, spec.models, map.faults()));
-          if (!ids.insert(spec.sets.back().id).second)
-            map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
-        }
-        read_fields(map, spec);
-        if (map.has("by")) spec.by_where = map.where("by");
-        if (const auto light = map.child("light"))
-          spec.light = read_light(*light, {folder_of_input(file), data_directories}, map.faults());
-        if (spec.by == PlacementAim::false_off && !spec.light) {
-          map.faults().error(spec.by_where,
-                             "by: false_off: whose light? It needs `light: {script: week.yaml, delay_min: 10}`");
-        }
-        if (const auto search = map.child("search")) {
-          spec.search = read_search(*search, spec.models, map.faults());
-          if (spec.by != PlacementAim::area && spec.search->evaluations < spec.search->n_sensors) {
-            map.faults().error(search->where(), "search: " + std::to_string(spec.search->n_sensors) +
-                                                    " sensors need as many places: evaluations, by " +
-                                                    word_of(spec.by) + " the number of places, is " +
-                                                    std::to_string(spec.search->evaluations));
-          }
-        }
-        return spec;
-      });
-}
-
-NuisanceSpec read_nuisance(const std::filesystem::path& file) {
-  return read_versioned(YamlNode::load(read_input(file)), "nuisance", "pirsim_nuisance", [&](YamlMap& map) {
-    NuisanceSpec spec;
-    read_numbers(map, spec);
-    return spec;
-  });
-}
-
-// Reader of walk tests.
-
-namespace {
-
 /// Numbers of the test itself that stand with the movement that they are about.
 template <auto... members>
 void read_numbers_of(YamlMap& map, WalkTestSpec& spec) {
@@ -272,6 +210,60 @@ WalkTestSpec read(YamlMap& map, const std::string& name) {
 }
 
 }  // namespace
+
+CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return read_versioned(YamlNode::load(read_input(file), overrides), "coverage study", "pirsim_coverage",
+                        [&](YamlMap& map) {
+                          CoverageSpec spec;
+                          spec.name = map.text("name", stem_of_input(file));
+                          read_coverage_keys(map, spec);
+                          return spec;
+                        });
+}
+
+PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides,
+                              std::span<const std::filesystem::path> data_directories) {
+  return read_versioned(
+      YamlNode::load(read_input(file), overrides), "placement study", "pirsim_placements", [&](YamlMap& map) {
+        PlacementSpec spec;
+        spec.coverage.name = map.text("name", stem_of_input(file));
+        read_coverage_keys(map, spec.coverage);
+        std::set<std::string> ids;
+        for (const YamlNode& set : map.list("sets")) {
+          spec.sets.push_back(read_set(set, spec.models, map.faults()));
+          if (!ids.insert(spec.sets.back().id).second)
+            map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
+        }
+        read_fields(map, spec);
+        if (map.has("by")) spec.by_where = map.where("by");
+        if (const auto light = map.child("light"))
+          spec.light = read_light(*light, {folder_of_input(file), data_directories}, map.faults());
+        if (spec.by == PlacementAim::false_off && !spec.light) {
+          map.faults().error(spec.by_where,
+                             "by: false_off: whose light? It needs `light: {script: week.yaml, delay_min: 10}`");
+        }
+        if (const auto search = map.child("search")) {
+          spec.search = read_search(*search, spec.models, map.faults());
+          if (spec.by != PlacementAim::area && spec.search->evaluations < spec.search->n_sensors) {
+            map.faults().error(search->where(), "search: " + std::to_string(spec.search->n_sensors) +
+                                                    " sensors need as many places: evaluations, by " +
+                                                    word_of(spec.by) + " the number of places, is " +
+                                                    std::to_string(spec.search->evaluations));
+          }
+        }
+        return spec;
+      });
+}
+
+NuisanceSpec read_nuisance(const std::filesystem::path& file) {
+  return read_versioned(YamlNode::load(read_input(file)), "nuisance", "pirsim_nuisance", [&](YamlMap& map) {
+    NuisanceSpec spec;
+    read_numbers(map, spec);
+    return spec;
+  });
+}
+
+// Reader of walk tests.
 
 WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return read_versioned(YamlNode::load(read_input(file), overrides), "walk test", "pirsim_walk_test",

@@ -67,6 +67,269 @@ void report_once(Diagnostics& faults, const Where& where, const std::string& mes
   if (!known) faults.error(where, message);
 }
 
+/// Leaves out what was told at that place in these words.
+void take_back(Diagnostics& faults, const Where& where, const std::string& message) {
+  Diagnostics kept;
+  for (const Issue& issue : faults.issues()) {
+    if (issue.where == where && issue.message == message) continue;
+    issue.severity == Severity::error ? kept.error(issue.where, issue.message)
+                                      : kept.warning(issue.where, issue.message);
+  }
+  faults = std::move(kept);
+}
+
+struct Override {
+  Where where;  ///< names the whole option
+  std::vector<std::string> path;
+  YamlTreePtr value;
+};
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (true) {
+    const std::size_t end = text.find(separator);
+    parts.emplace_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// Gives every node of a parsed value the option as its place.
+YamlTreePtr relocated(const YamlTreePtr& tree, const YamlPlace& place) {
+  auto copy = std::make_shared<YamlTree>(*tree);
+  copy->place = place;
+  for (YamlTreeKey& key : copy->keys) key.place = place;
+  for (YamlTreePtr& child : copy->children) child = relocated(child, place);
+  return copy;
+}
+
+Override parse_override(const std::string& text) {
+  const YamlPlace place{std::make_shared<const std::string>("--set " + text), 0, 0};
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw Error(ErrorCode::usage, place.where(), "expected key.key=value");
+  std::vector<std::string> path = split(std::string_view(text).substr(0, equals), '.');
+  if (std::find(path.begin(), path.end(), std::string{}) != path.end()) {
+    throw Error(ErrorCode::usage, place.where(), "expected key.key=value: a key is empty");
+  }
+  try {
+    const std::string value_text = text_from(text.substr(equals + 1), *place.file);
+    const YamlTreePtr value = parse_yaml_tree(value_text, *place.file);
+    return {place.where(), std::move(path), relocated(value, place)};
+  } catch (const Error& fault) {
+    throw Error(ErrorCode::usage, place.where(), fault.issues().front().message);
+  }
+}
+
+std::size_t list_index(const std::string& text, std::size_t size, const Where& where) {
+  const std::optional<std::size_t> index = parse_number<std::size_t>(text);
+  if (!index || *index > size) {
+    throw Error(ErrorCode::usage, where,
+                "'" + text + "' is not an index of this list of " + std::to_string(size) + ", which count from 0 (" +
+                    std::to_string(size) + " adds one)");
+  }
+  return *index;
+}
+
+void count_values(YamlTree& tree) {
+  tree.expanded_nodes = 1;
+  for (const YamlTreePtr& child : tree.children) tree.expanded_nodes += child->expanded_nodes;
+}
+
+YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_t depth) {
+  if (depth == change.path.size()) return change.value;
+  const std::string& name = change.path[depth];
+  auto copy = std::make_shared<YamlTree>(*tree);
+  if (tree->kind == YamlTree::Kind::scalar) {
+    throw Error(ErrorCode::usage, change.where, "nothing can be set below the value '" + tree->scalar + "'");
+  }
+  if (tree->kind == YamlTree::Kind::list) {
+    const std::size_t index = list_index(name, tree->children.size(), change.where);
+    if (index == tree->children.size()) {
+      auto empty = std::make_shared<YamlTree>();
+      empty->place = change.value->place;
+      copy->children.push_back(std::move(empty));
+    }
+    YamlTreePtr& child = copy->children[index];
+    child = replaced(child, change, depth + 1);
+    count_values(*copy);
+    return copy;
+  }
+  copy->kind = YamlTree::Kind::map;  // of an empty node
+  const auto key = std::find_if(copy->keys.begin(), copy->keys.end(), [&](const auto& k) { return k.name == name; });
+  if (key != copy->keys.end()) {
+    YamlTreePtr& child = copy->children[static_cast<std::size_t>(key - copy->keys.begin())];
+    child = replaced(child, change, depth + 1);
+    count_values(*copy);
+    return copy;
+  }
+  auto empty = std::make_shared<YamlTree>();
+  empty->place = change.value->place;
+  copy->keys.push_back({name, change.value->place});
+  copy->children.push_back(replaced(empty, change, depth + 1));
+  count_values(*copy);
+  return copy;
+}
+
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(const std::string& file) : file_(std::make_shared<const std::string>(file)) {}
+
+  [[nodiscard]] YamlTreePtr root() const { return root_; }
+  [[nodiscard]] const Diagnostics& faults() const { return faults_; }
+  [[nodiscard]] YamlPlace place(const YAML::Mark& mark) const {
+    if (mark.is_null()) return {file_, 0, 0};
+    return {file_, mark.line + 1, mark.column + 1};  // yaml-cpp counts from 0
+  }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (std::exchange(started_, true)) refuse(mark, "a second document; expected one per file");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_as_key(mark);
+    add({YamlTree::Kind::null, place(mark), {}, {}, {}}, anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_as_key(mark);
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) refuse(mark, "an alias that refers to itself");
+    attach(found->second);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    refuse_unknown(tag, mark);
+    if (expects_key()) {
+      refuse_invisible(mark, value, Lines::one);
+      return add_key(mark, value);
+    }
+    refuse_invisible(mark, value, Lines::many);
+    add({YamlTree::Kind::scalar, place(mark), value, {}, {}}, anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value /*style*/) override {
+    refuse_unknown(tag, mark);
+    open(YamlTree::Kind::list, mark, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value /*style*/) override {
+    refuse_unknown(tag, mark);
+    open(YamlTree::Kind::map, mark, anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    YamlTree tree;
+    YAML::anchor_t anchor = 0;
+    std::map<std::string, YamlPlace> names;  ///< keys so far
+  };
+
+  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& message) const {
+    throw Error(ErrorCode::input, place(mark).where(), message);
+  }
+  [[nodiscard]] bool expects_key() const {
+    return !open_.empty() && open_.back().tree.kind == YamlTree::Kind::map &&
+           open_.back().tree.keys.size() == open_.back().tree.children.size();
+  }
+  void refuse_as_key(const YAML::Mark& mark) const {
+    // yaml-cpp takes a bracket that is never closed for a key.
+    if (expects_key()) refuse(mark, "expected a name as key (is a bracket left open?)");
+  }
+  /// `!3` is a tag and an empty value, which somebody who writes it seldom means. Standard tags say what pirsim expects
+  /// anyway; `?` and `!` are what yaml-cpp says of values without one.
+  void refuse_unknown(const std::string& tag, const YAML::Mark& mark) const {
+    if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;
+    refuse(mark, "the tag '" + tag + "' isn't known (a text that begins with ! stands in quotes)");
+  }
+  /// Names go to rows, pages and terminals; a text of several lines may still be a description.
+  void refuse_invisible(const YAML::Mark& mark, const std::string& value, Lines lines) const {
+    if (const std::string found = invisible_character(value, lines); !found.empty())
+      refuse(mark, "'" + value + "' contains " + found);
+  }
+  void add_key(const YAML::Mark& mark, const std::string& name) {
+    Open& map = open_.back();
+    const auto [first, is_new] = map.names.emplace(name, place(mark));
+    if (!is_new) {
+      faults_.error(place(mark).where(),
+                    "key '" + name + "' appears twice (first in line " + std::to_string(first->second.line) + ")");
+    }
+    map.tree.keys.push_back({name, place(mark)});
+  }
+  void open(YamlTree::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
+    refuse_as_key(mark);
+    if (open_.size() >= limits::yaml_levels)
+      refuse(mark, "nested more than " + std::to_string(limits::yaml_levels) + " levels deep");
+    open_.push_back({{kind, place(mark), {}, {}, {}}, anchor, {}});
+  }
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    add(std::move(done.tree), done.anchor);
+  }
+  void add(YamlTree tree, YAML::anchor_t anchor) {
+    auto node = std::make_shared<const YamlTree>(std::move(tree));
+    if (anchor != 0) anchors_[anchor] = node;
+    attach(std::move(node));
+  }
+  void attach(YamlTreePtr node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+      return;
+    }
+    YamlTree& parent = open_.back().tree;
+    parent.expanded_nodes += node->expanded_nodes;
+    if (parent.expanded_nodes > limits::yaml_values) {
+      throw Error(ErrorCode::input, parent.place.where(),
+                  "more than " + std::to_string(limits::yaml_values) + " values once aliases are followed");
+    }
+    parent.children.push_back(std::move(node));
+  }
+
+  std::shared_ptr<const std::string> file_;
+  bool started_ = false;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, YamlTreePtr> anchors_;
+  YamlTreePtr root_;
+  Diagnostics faults_;
+};
+
+/// What usually lies behind a fault whose name says little.
+std::string advice(const std::string& fault) {
+  for (const char* often : {YAML::ErrorMsg::END_OF_MAP, YAML::ErrorMsg::END_OF_SEQ, YAML::ErrorMsg::MAP_VALUE,
+                            YAML::ErrorMsg::BLOCK_ENTRY}) {
+    if (fault == often) return "; check the indentation, here and above";
+  }
+  return {};
+}
+
+enum class Below { maps, list };
+
+void emit(YAML::Emitter& out, const YamlTree& tree, Below below) {
+  switch (tree.kind) {
+    case YamlTree::Kind::null:
+      out << YAML::Null;
+      return;
+    case YamlTree::Kind::scalar:
+      out << tree.scalar;
+      return;
+    case YamlTree::Kind::list:
+      // A list of maps takes a line an item, and each item is whole on it.
+      out << (below == Below::list ? YAML::Flow : YAML::Block) << YAML::BeginSeq;
+      for (const YamlTreePtr& child : tree.children) emit(out, *child, Below::list);
+      out << YAML::EndSeq;
+      return;
+    case YamlTree::Kind::map:
+      out << (below == Below::list ? YAML::Flow : YAML::Block) << YAML::BeginMap;
+      for (std::size_t i = 0; i < tree.keys.size(); ++i) {
+        out << YAML::Key << tree.keys[i].name << YAML::Value;
+        emit(out, *tree.children[i], below);
+      }
+      out << YAML::EndMap;
+      return;
+  }
+}
+
 }  // namespace
 
 YamlNode YamlNode::load(const Input& input, std::span<const std::string> overrides) {
@@ -312,21 +575,6 @@ std::vector<YamlNode> YamlMap::required_list(const std::string& key, std::size_t
   return list(key, most);
 }
 
-namespace {
-
-/// Leaves out what was told at that place in these words.
-void take_back(Diagnostics& faults, const Where& where, const std::string& message) {
-  Diagnostics kept;
-  for (const Issue& issue : faults.issues()) {
-    if (issue.where == where && issue.message == message) continue;
-    issue.severity == Severity::error ? kept.error(issue.where, issue.message)
-                                      : kept.warning(issue.where, issue.message);
-  }
-  faults = std::move(kept);
-}
-
-}  // namespace
-
 void YamlMap::finish() const {
   for (const YamlKey& key : node_.keys()) {
     if (std::find(asked_.begin(), asked_.end(), key.name) != asked_.end()) continue;
@@ -366,245 +614,12 @@ std::vector<double> read_numbers(const YamlNode& node, Diagnostics& faults, std:
 
 // `--set a.b.0.c=value`: one node of a tree replaced.
 
-namespace {
-
-struct Override {
-  Where where;  ///< names the whole option
-  std::vector<std::string> path;
-  YamlTreePtr value;
-};
-
-std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> parts;
-  while (true) {
-    const std::size_t end = text.find(separator);
-    parts.emplace_back(text.substr(0, end));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
-/// Gives every node of a parsed value the option as its place.
-YamlTreePtr relocated(const YamlTreePtr& tree, const YamlPlace& place) {
-  auto copy = std::make_shared<YamlTree>(*tree);
-  copy->place = place;
-  for (YamlTreeKey& key : copy->keys) key.place = place;
-  for (YamlTreePtr& child : copy->children) child = relocated(child, place);
-  return copy;
-}
-
-Override parse_override(const std::string& text) {
-  const YamlPlace place{std::make_shared<const std::string>("--set " + text), 0, 0};
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) throw Error(ErrorCode::usage, place.where(), "expected key.key=value");
-  std::vector<std::string> path = split(std::string_view(text).substr(0, equals), '.');
-  if (std::find(path.begin(), path.end(), std::string{}) != path.end()) {
-    throw Error(ErrorCode::usage, place.where(), "expected key.key=value: a key is empty");
-  }
-  try {
-    const std::string value_text = text_from(text.substr(equals + 1), *place.file);
-    const YamlTreePtr value = parse_yaml_tree(value_text, *place.file);
-    return {place.where(), std::move(path), relocated(value, place)};
-  } catch (const Error& fault) {
-    throw Error(ErrorCode::usage, place.where(), fault.issues().front().message);
-  }
-}
-
-std::size_t list_index(const std::string& text, std::size_t size, const Where& where) {
-  const std::optional<std::size_t> index = parse_number<std::size_t>(text);
-  if (!index || *index > size) {
-    throw Error(ErrorCode::usage, where,
-                "'" + text + "' is not an index of this list of " + std::to_string(size) + ", which count from 0 (" +
-                    std::to_string(size) + " adds one)");
-  }
-  return *index;
-}
-
-void count_values(YamlTree& tree) {
-  tree.expanded_nodes = 1;
-  for (const YamlTreePtr& child : tree.children) tree.expanded_nodes += child->expanded_nodes;
-}
-
-YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_t depth) {
-  if (depth == change.path.size()) return change.value;
-  const std::string& name = change.path[depth];
-  auto copy = std::make_shared<YamlTree>(*tree);
-  if (tree->kind == YamlTree::Kind::scalar) {
-    throw Error(ErrorCode::usage, change.where, "nothing can be set below the value '" + tree->scalar + "'");
-  }
-  if (tree->kind == YamlTree::Kind::list) {
-    const std::size_t index = list_index(name, tree->children.size(), change.where);
-    if (index == tree->children.size()) {
-      auto empty = std::make_shared<YamlTree>();
-      empty->place = change.value->place;
-      copy->children.push_back(std::move(empty));
-    }
-    YamlTreePtr& child = copy->children[index];
-    child = replaced(child, change, depth + 1);
-    count_values(*copy);
-    return copy;
-  }
-  copy->kind = YamlTree::Kind::map;  // of an empty node
-  const auto key = std::find_if(copy->keys.begin(), copy->keys.end(), [&](const auto& k) { return k.name == name; });
-  if (key != copy->keys.end()) {
-    YamlTreePtr& child = copy->children[static_cast<std::size_t>(key - copy->keys.begin())];
-    child = replaced(child, change, depth + 1);
-    count_values(*copy);
-    return copy;
-  }
-  auto empty = std::make_shared<YamlTree>();
-  empty->place = change.value->place;
-  copy->keys.push_back({name, change.value->place});
-  copy->children.push_back(replaced(empty, change, depth + 1));
-  count_values(*copy);
-  return copy;
-}
-
-}  // namespace
-
 YamlTreePtr apply_override(const YamlTreePtr& root, const std::string& override_text) {
   return replaced(root, parse_override(override_text), 0);
 }
 
 // yaml-cpp's events to a tree. Its own node type is not used: it drops repeated keys without a word and hides how
 // large a document becomes when aliases are followed.
-
-namespace {
-
-class TreeBuilder final : public YAML::EventHandler {
- public:
-  explicit TreeBuilder(const std::string& file) : file_(std::make_shared<const std::string>(file)) {}
-
-  [[nodiscard]] YamlTreePtr root() const { return root_; }
-  [[nodiscard]] const Diagnostics& faults() const { return faults_; }
-  [[nodiscard]] YamlPlace place(const YAML::Mark& mark) const {
-    if (mark.is_null()) return {file_, 0, 0};
-    return {file_, mark.line + 1, mark.column + 1};  // yaml-cpp counts from 0
-  }
-
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    if (std::exchange(started_, true)) refuse(mark, "a second document; expected one per file");
-  }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    refuse_as_key(mark);
-    add({YamlTree::Kind::null, place(mark), {}, {}, {}}, anchor);
-  }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    refuse_as_key(mark);
-    const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) refuse(mark, "an alias that refers to itself");
-    attach(found->second);
-  }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& value) override {
-    refuse_unknown(tag, mark);
-    if (expects_key()) {
-      refuse_invisible(mark, value, Lines::one);
-      return add_key(mark, value);
-    }
-    refuse_invisible(mark, value, Lines::many);
-    add({YamlTree::Kind::scalar, place(mark), value, {}, {}}, anchor);
-  }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value /*style*/) override {
-    refuse_unknown(tag, mark);
-    open(YamlTree::Kind::list, mark, anchor);
-  }
-  void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value /*style*/) override {
-    refuse_unknown(tag, mark);
-    open(YamlTree::Kind::map, mark, anchor);
-  }
-  void OnMapEnd() override { close(); }
-
- private:
-  struct Open {
-    YamlTree tree;
-    YAML::anchor_t anchor = 0;
-    std::map<std::string, YamlPlace> names;  ///< keys so far
-  };
-
-  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& message) const {
-    throw Error(ErrorCode::input, place(mark).where(), message);
-  }
-  [[nodiscard]] bool expects_key() const {
-    return !open_.empty() && open_.back().tree.kind == YamlTree::Kind::map &&
-           open_.back().tree.keys.size() == open_.back().tree.children.size();
-  }
-  void refuse_as_key(const YAML::Mark& mark) const {
-    // yaml-cpp takes a bracket that is never closed for a key.
-    if (expects_key()) refuse(mark, "expected a name as key (is a bracket left open?)");
-  }
-  /// `!3` is a tag and an empty value, which somebody who writes it seldom means. Standard tags say what pirsim expects
-  /// anyway; `?` and `!` are what yaml-cpp says of values without one.
-  void refuse_unknown(const std::string& tag, const YAML::Mark& mark) const {
-    if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;
-    refuse(mark, "the tag '" + tag + "' isn't known (a text that begins with ! stands in quotes)");
-  }
-  /// Names go to rows, pages and terminals; a text of several lines may still be a description.
-  void refuse_invisible(const YAML::Mark& mark, const std::string& value, Lines lines) const {
-    if (const std::string found = invisible_character(value, lines); !found.empty())
-      refuse(mark, "'" + value + "' contains " + found);
-  }
-  void add_key(const YAML::Mark& mark, const std::string& name) {
-    Open& map = open_.back();
-    const auto [first, is_new] = map.names.emplace(name, place(mark));
-    if (!is_new) {
-      faults_.error(place(mark).where(),
-                    "key '" + name + "' appears twice (first in line " + std::to_string(first->second.line) + ")");
-    }
-    map.tree.keys.push_back({name, place(mark)});
-  }
-  void open(YamlTree::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
-    refuse_as_key(mark);
-    if (open_.size() >= limits::yaml_levels)
-      refuse(mark, "nested more than " + std::to_string(limits::yaml_levels) + " levels deep");
-    open_.push_back({{kind, place(mark), {}, {}, {}}, anchor, {}});
-  }
-  void close() {
-    Open done = std::move(open_.back());
-    open_.pop_back();
-    add(std::move(done.tree), done.anchor);
-  }
-  void add(YamlTree tree, YAML::anchor_t anchor) {
-    auto node = std::make_shared<const YamlTree>(std::move(tree));
-    if (anchor != 0) anchors_[anchor] = node;
-    attach(std::move(node));
-  }
-  void attach(YamlTreePtr node) {
-    if (open_.empty()) {
-      root_ = std::move(node);
-      return;
-    }
-    YamlTree& parent = open_.back().tree;
-    parent.expanded_nodes += node->expanded_nodes;
-    if (parent.expanded_nodes > limits::yaml_values) {
-      throw Error(ErrorCode::input, parent.place.where(),
-                  "more than " + std::to_string(limits::yaml_values) + " values once aliases are followed");
-    }
-    parent.children.push_back(std::move(node));
-  }
-
-  std::shared_ptr<const std::string> file_;
-  bool started_ = false;
-  std::vector<Open> open_;
-  std::map<YAML::anchor_t, YamlTreePtr> anchors_;
-  YamlTreePtr root_;
-  Diagnostics faults_;
-};
-
-/// What usually lies behind a fault whose name says little.
-std::string advice(const std::string& fault) {
-  for (const char* often : {YAML::ErrorMsg::END_OF_MAP, YAML::ErrorMsg::END_OF_SEQ, YAML::ErrorMsg::MAP_VALUE,
-                            YAML::ErrorMsg::BLOCK_ENTRY}) {
-    if (fault == often) return "; check the indentation, here and above";
-  }
-  return {};
-}
-
-}  // namespace
 
 YamlTreePtr parse_yaml_tree(std::string_view text, const std::string& file) {
   TreeBuilder builder(file);
@@ -622,37 +637,6 @@ YamlTreePtr parse_yaml_tree(std::string_view text, const std::string& file) {
   empty->place = builder.place({});
   return empty;
 }
-
-namespace {
-
-enum class Below { maps, list };
-
-void emit(YAML::Emitter& out, const YamlTree& tree, Below below) {
-  switch (tree.kind) {
-    case YamlTree::Kind::null:
-      out << YAML::Null;
-      return;
-    case YamlTree::Kind::scalar:
-      out << tree.scalar;
-      return;
-    case YamlTree::Kind::list:
-      // A list of maps takes a line an item, and each item is whole on it.
-      out << (below == Below::list ? YAML::Flow : YAML::Block) << YAML::BeginSeq;
-      for (const YamlTreePtr& child : tree.children) emit(out, *child, Below::list);
-      out << YAML::EndSeq;
-      return;
-    case YamlTree::Kind::map:
-      out << (below == Below::list ? YAML::Flow : YAML::Block) << YAML::BeginMap;
-      for (std::size_t i = 0; i < tree.keys.size(); ++i) {
-        out << YAML::Key << tree.keys[i].name << YAML::Value;
-        emit(out, *tree.children[i], below);
-      }
-      out << YAML::EndMap;
-      return;
-  }
-}
-
-}  // namespace
 
 std::string YamlNode::to_yaml() const {
   YAML::Emitter out;

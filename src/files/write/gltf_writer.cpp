@@ -34,156 +34,6 @@ std::vector<float> flattened(const std::vector<Vec3>& values) {
 
 int index_of_last(std::size_t size) { return static_cast<int>(size) - 1; }
 
-}  // namespace
-
-GltfBuilder::GltfBuilder(const std::string& title) {
-  model_.asset.version = "2.0";
-  model_.asset.generator = "pirsim";
-  model_.defaultScene = 0;
-  model_.scenes.emplace_back().name = title;
-}
-
-int GltfBuilder::add_positions(const std::vector<Vec3>& positions) {
-  return add_floats(flattened(positions), TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
-}
-
-int GltfBuilder::add_normals(const std::vector<Vec3>& normals) { return add_positions(normals); }
-
-int GltfBuilder::add_indices(const std::vector<std::uint32_t>& indices) {
-  tinygltf::Accessor accessor{};
-  accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-  accessor.type = TINYGLTF_TYPE_SCALAR;
-  accessor.count = indices.size();
-  return add_accessor(indices.data(), indices.size() * sizeof(std::uint32_t), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
-                      std::move(accessor));
-}
-
-int GltfBuilder::add_key_times(const std::vector<double>& seconds) {
-  return add_floats({seconds.begin(), seconds.end()}, TINYGLTF_TYPE_SCALAR, no_target);
-}
-
-int GltfBuilder::add_track(const std::vector<Vec3>& values) {
-  return add_floats(flattened(values), TINYGLTF_TYPE_VEC3, no_target);
-}
-
-int GltfBuilder::add_track(const std::vector<Quat>& values) {
-  std::vector<float> flat;
-  flat.reserve(4 * values.size());
-  for (const Quat& q : values) {
-    for (const double component : {q.x, q.y, q.z, q.w}) flat.push_back(static_cast<float>(component));
-  }
-  return add_floats(flat, TINYGLTF_TYPE_VEC4, no_target);
-}
-
-int GltfBuilder::add_floats(const std::vector<float>& values, int type, int target) {
-  const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-  tinygltf::Accessor accessor{};
-  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-  accessor.type = type;
-  accessor.count = values.size() / width;
-  for (std::size_t component = 0; component < width; ++component) {
-    float least = values[component];
-    float most = least;
-    for (std::size_t i = component; i < values.size(); i += width) {
-      least = std::min(least, values[i]);
-      most = std::max(most, values[i]);
-    }
-    accessor.minValues.push_back(static_cast<double>(least));
-    accessor.maxValues.push_back(static_cast<double>(most));
-  }
-  return add_accessor(values.data(), values.size() * sizeof(float), target, std::move(accessor));
-}
-
-int GltfBuilder::add_accessor(const void* data, std::size_t bytes, int target, tinygltf::Accessor accessor) {
-  if (model_.buffers.empty()) model_.buffers.emplace_back();
-  std::vector<unsigned char>& buffer = model_.buffers.front().data;
-  static_assert(sizeof(float) == alignment && sizeof(std::uint32_t) == alignment);
-  tinygltf::BufferView& view = model_.bufferViews.emplace_back();
-  view.buffer = 0;
-  view.byteOffset = buffer.size();
-  view.byteLength = bytes;
-  view.target = target;
-  const auto* begin = static_cast<const unsigned char*>(data);
-  buffer.insert(buffer.end(), begin, begin + bytes);
-  accessor.bufferView = index_of_last(model_.bufferViews.size());
-  model_.accessors.push_back(std::move(accessor));
-  return index_of_last(model_.accessors.size());
-}
-
-int GltfBuilder::add_material(const std::string& name, const Vec3& colour, double opacity) {
-  tinygltf::Material& material = model_.materials.emplace_back();
-  material.name = name;
-  material.pbrMetallicRoughness.baseColorFactor = {colour.x, colour.y, colour.z, opacity};
-  material.pbrMetallicRoughness.metallicFactor = 0.0;
-  material.pbrMetallicRoughness.roughnessFactor = 0.9;
-  material.alphaMode = opacity < 1.0 ? "BLEND" : "OPAQUE";
-  material.doubleSided = true;
-  return index_of_last(model_.materials.size());
-}
-
-int GltfBuilder::add_mesh(const std::string& name, const tinygltf::Primitive& primitive) {
-  tinygltf::Mesh& mesh = model_.meshes.emplace_back();
-  mesh.name = name;
-  mesh.primitives.push_back(primitive);
-  return index_of_last(model_.meshes.size());
-}
-
-int GltfBuilder::add_mesh(const TriMesh& mesh, int material) {
-  std::vector<std::uint32_t> indices;
-  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.attributes["POSITION"] = add_positions(mesh.positions);
-  primitive.indices = add_indices(indices);
-  primitive.material = material;
-  return add_mesh(mesh.name, primitive);
-}
-
-int GltfBuilder::add_node(tinygltf::Node node, int parent) {
-  model_.nodes.push_back(std::move(node));
-  const int index = index_of_last(model_.nodes.size());
-  auto& siblings = parent < 0 ? model_.scenes.front().nodes : model_.nodes[static_cast<std::size_t>(parent)].children;
-  siblings.push_back(index);
-  return index;
-}
-
-void GltfBuilder::animate(int node, const std::string& path, int key_times, int track,
-                          const std::string& interpolation) {
-  if (model_.animations.empty()) model_.animations.emplace_back().name = model_.scenes.front().name;
-  tinygltf::Animation& animation = model_.animations.front();
-  tinygltf::AnimationSampler& sampler = animation.samplers.emplace_back();
-  sampler.input = key_times;
-  sampler.output = track;
-  sampler.interpolation = interpolation;
-  tinygltf::AnimationChannel& channel = animation.channels.emplace_back();
-  channel.sampler = index_of_last(animation.samplers.size());
-  channel.target_node = node;
-  channel.target_path = path;
-}
-
-std::string GltfBuilder::bytes(Container container, const Where& where, const std::string& what) const {
-  std::ostringstream out;
-  const bool binary = container == Container::binary;
-  try {
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, !binary, binary);
-  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
-    throw Error(ErrorCode::usage, where, "the " + what + " can't be written as glTF: " + fault.what());
-  }
-  return std::move(out).str();
-}
-
-void GltfBuilder::write(const std::filesystem::path& file, const std::string& what) const {
-  const Container container = file.extension() == ".glb" ? Container::binary : Container::text;
-  write_text_file(file, bytes(container, Where{file.string()}, what));
-}
-
-tinygltf::Value pirsim_extras(const std::string& type, tinygltf::Value::Object members) {
-  members["type"] = tinygltf::Value(type);
-  return tinygltf::Value(tinygltf::Value::Object{{"pirsim", tinygltf::Value(std::move(members))}});
-}
-
-namespace {
-
 /// A mesh that reaches higher above the origin's plane is a wall or a ceiling and drawn so that one can look in.
 constexpr double furniture_height_m = 1.8;
 constexpr double wall_opacity = 0.25;
@@ -404,19 +254,6 @@ GltfBuilder document_of(const ExportedRun& run, const Where& where) {
   return document;
 }
 
-}  // namespace
-
-void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
-  document_of(run, Where{file.string()}).write(file, "run");
-}
-
-std::string to_glb(const ExportedRun& run) {
-  const Where where{run.title};
-  return document_of(run, where).bytes(GltfBuilder::Container::binary, where, "run");
-}
-
-namespace {
-
 constexpr std::uint32_t sectors = 24;       ///< round the axis
 constexpr std::uint32_t quarter_rings = 6;  ///< from a pole to the equator
 
@@ -515,12 +352,6 @@ struct Tessellation {
   SolidMesh operator()(const MeshSolid& solid) const { return flat_shaded(solid.surface->mesh()); }
 };
 
-}  // namespace
-
-SolidMesh tessellated(const Shape& shape) { return std::visit(Tessellation{}, shape); }
-
-namespace {
-
 using Value = tinygltf::Value;
 
 tinygltf::Node placed_node(const std::string& name, const Frame& frame, Value mark) {
@@ -618,6 +449,163 @@ GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
 }
 
 }  // namespace
+
+GltfBuilder::GltfBuilder(const std::string& title) {
+  model_.asset.version = "2.0";
+  model_.asset.generator = "pirsim";
+  model_.defaultScene = 0;
+  model_.scenes.emplace_back().name = title;
+}
+
+int GltfBuilder::add_positions(const std::vector<Vec3>& positions) {
+  return add_floats(flattened(positions), TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
+}
+
+int GltfBuilder::add_normals(const std::vector<Vec3>& normals) { return add_positions(normals); }
+
+int GltfBuilder::add_indices(const std::vector<std::uint32_t>& indices) {
+  tinygltf::Accessor accessor{};
+  accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  accessor.type = TINYGLTF_TYPE_SCALAR;
+  accessor.count = indices.size();
+  return add_accessor(indices.data(), indices.size() * sizeof(std::uint32_t), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
+                      std::move(accessor));
+}
+
+int GltfBuilder::add_key_times(const std::vector<double>& seconds) {
+  return add_floats({seconds.begin(), seconds.end()}, TINYGLTF_TYPE_SCALAR, no_target);
+}
+
+int GltfBuilder::add_track(const std::vector<Vec3>& values) {
+  return add_floats(flattened(values), TINYGLTF_TYPE_VEC3, no_target);
+}
+
+int GltfBuilder::add_track(const std::vector<Quat>& values) {
+  std::vector<float> flat;
+  flat.reserve(4 * values.size());
+  for (const Quat& q : values) {
+    for (const double component : {q.x, q.y, q.z, q.w}) flat.push_back(static_cast<float>(component));
+  }
+  return add_floats(flat, TINYGLTF_TYPE_VEC4, no_target);
+}
+
+int GltfBuilder::add_floats(const std::vector<float>& values, int type, int target) {
+  const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+  tinygltf::Accessor accessor{};
+  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+  accessor.type = type;
+  accessor.count = values.size() / width;
+  for (std::size_t component = 0; component < width; ++component) {
+    float least = values[component];
+    float most = least;
+    for (std::size_t i = component; i < values.size(); i += width) {
+      least = std::min(least, values[i]);
+      most = std::max(most, values[i]);
+    }
+    accessor.minValues.push_back(static_cast<double>(least));
+    accessor.maxValues.push_back(static_cast<double>(most));
+  }
+  return add_accessor(values.data(), values.size() * sizeof(float), target, std::move(accessor));
+}
+
+int GltfBuilder::add_accessor(const void* data, std::size_t bytes, int target, tinygltf::Accessor accessor) {
+  if (model_.buffers.empty()) model_.buffers.emplace_back();
+  std::vector<unsigned char>& buffer = model_.buffers.front().data;
+  static_assert(sizeof(float) == alignment && sizeof(std::uint32_t) == alignment);
+  tinygltf::BufferView& view = model_.bufferViews.emplace_back();
+  view.buffer = 0;
+  view.byteOffset = buffer.size();
+  view.byteLength = bytes;
+  view.target = target;
+  const auto* begin = static_cast<const unsigned char*>(data);
+  buffer.insert(buffer.end(), begin, begin + bytes);
+  accessor.bufferView = index_of_last(model_.bufferViews.size());
+  model_.accessors.push_back(std::move(accessor));
+  return index_of_last(model_.accessors.size());
+}
+
+int GltfBuilder::add_material(const std::string& name, const Vec3& colour, double opacity) {
+  tinygltf::Material& material = model_.materials.emplace_back();
+  material.name = name;
+  material.pbrMetallicRoughness.baseColorFactor = {colour.x, colour.y, colour.z, opacity};
+  material.pbrMetallicRoughness.metallicFactor = 0.0;
+  material.pbrMetallicRoughness.roughnessFactor = 0.9;
+  material.alphaMode = opacity < 1.0 ? "BLEND" : "OPAQUE";
+  material.doubleSided = true;
+  return index_of_last(model_.materials.size());
+}
+
+int GltfBuilder::add_mesh(const std::string& name, const tinygltf::Primitive& primitive) {
+  tinygltf::Mesh& mesh = model_.meshes.emplace_back();
+  mesh.name = name;
+  mesh.primitives.push_back(primitive);
+  return index_of_last(model_.meshes.size());
+}
+
+int GltfBuilder::add_mesh(const TriMesh& mesh, int material) {
+  std::vector<std::uint32_t> indices;
+  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.attributes["POSITION"] = add_positions(mesh.positions);
+  primitive.indices = add_indices(indices);
+  primitive.material = material;
+  return add_mesh(mesh.name, primitive);
+}
+
+int GltfBuilder::add_node(tinygltf::Node node, int parent) {
+  model_.nodes.push_back(std::move(node));
+  const int index = index_of_last(model_.nodes.size());
+  auto& siblings = parent < 0 ? model_.scenes.front().nodes : model_.nodes[static_cast<std::size_t>(parent)].children;
+  siblings.push_back(index);
+  return index;
+}
+
+void GltfBuilder::animate(int node, const std::string& path, int key_times, int track,
+                          const std::string& interpolation) {
+  if (model_.animations.empty()) model_.animations.emplace_back().name = model_.scenes.front().name;
+  tinygltf::Animation& animation = model_.animations.front();
+  tinygltf::AnimationSampler& sampler = animation.samplers.emplace_back();
+  sampler.input = key_times;
+  sampler.output = track;
+  sampler.interpolation = interpolation;
+  tinygltf::AnimationChannel& channel = animation.channels.emplace_back();
+  channel.sampler = index_of_last(animation.samplers.size());
+  channel.target_node = node;
+  channel.target_path = path;
+}
+
+std::string GltfBuilder::bytes(Container container, const Where& where, const std::string& what) const {
+  std::ostringstream out;
+  const bool binary = container == Container::binary;
+  try {
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, !binary, binary);
+  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
+    throw Error(ErrorCode::usage, where, "the " + what + " can't be written as glTF: " + fault.what());
+  }
+  return std::move(out).str();
+}
+
+void GltfBuilder::write(const std::filesystem::path& file, const std::string& what) const {
+  const Container container = file.extension() == ".glb" ? Container::binary : Container::text;
+  write_text_file(file, bytes(container, Where{file.string()}, what));
+}
+
+tinygltf::Value pirsim_extras(const std::string& type, tinygltf::Value::Object members) {
+  members["type"] = tinygltf::Value(type);
+  return tinygltf::Value(tinygltf::Value::Object{{"pirsim", tinygltf::Value(std::move(members))}});
+}
+
+void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
+  document_of(run, Where{file.string()}).write(file, "run");
+}
+
+std::string to_glb(const ExportedRun& run) {
+  const Where where{run.title};
+  return document_of(run, where).bytes(GltfBuilder::Container::binary, where, "run");
+}
+
+SolidMesh tessellated(const Shape& shape) { return std::visit(Tessellation{}, shape); }
 
 std::string scene_text(const SceneSpec& scene, const Where& where) {
   return document_of(scene, where).bytes(GltfBuilder::Container::text, where, "scene");

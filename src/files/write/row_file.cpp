@@ -43,33 +43,6 @@ struct Visitor : Kinds... {
 template <typename... Kinds>
 Visitor(Kinds...) -> Visitor<Kinds...>;
 
-}  // namespace
-
-void add_csv(std::string& line, const Cell& cell, int decimals) {
-  const auto add_number = [&](auto number) {
-    std::array<char, 32> text;
-    line.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr);
-  };
-  std::visit(Visitor{[](std::monostate) {}, [&](std::int64_t number) { add_number(number); },
-                     [&](double number) {
-                       const double scale = decimals < 0 ? 1.0 : std::pow(10.0, decimals);
-                       add_number(decimals < 0 ? number : std::round(scale * number) / scale);
-                     },
-                     [&](std::string_view text) {
-                       if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-                         line += text;
-                       } else {
-                         line += csv_field(text);
-                       }
-                     },
-                     [&](std::span<const std::uint8_t> bits) {
-                       for (const std::uint8_t bit : bits) line += bit != 0 ? '1' : '0';
-                     }},
-             cell);
-}
-
-namespace {
-
 constexpr int format_version = 2;
 
 using nlohmann::ordered_json;
@@ -214,107 +187,6 @@ Manifest from_tree(const ordered_json& tree) {
   return manifest;
 }
 
-}  // namespace
-
-RunNotes& RunNotes::operator+=(const RunNotes& other) {
-  passes_through += other.passes_through;
-  if (first_pass.empty()) first_pass = other.first_pass;
-  seats_changed += other.seats_changed;
-  seats_missed += other.seats_missed;
-  waits_outside += other.waits_outside;
-  if (first_wait.empty()) first_wait = other.first_wait;
-  failed.insert(failed.end(), other.failed.begin(), other.failed.end());
-  return *this;
-}
-
-bool RunNotes::empty() const noexcept {
-  return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && waits_outside == 0 && failed.empty();
-}
-
-std::string RunNotes::remarks() const {
-  std::string text;
-  const auto tell = [&](std::uint64_t n, const char* what) {
-    if (n > 0) text += (text.empty() ? "" : " ") + std::string(what) + std::to_string(n) + '.';
-  };
-  tell(failed.size(), "Runs that failed and are left out: ");
-  tell(passes_through, "Times that a person who was held up walked through others: ");
-  tell(seats_changed, "Times that a person took another seat: ");
-  tell(seats_missed, "Times that a person stayed without a seat: ");
-  tell(waits_outside, "Times that a person waited outside for a seat that was taken: ");
-  return text;
-}
-
-std::string to_json(const RunNotes& notes) {
-  return tree_of(notes).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-std::optional<RunNotes> notes_from_json(const std::string& text) {
-  try {
-    return notes_from(ordered_json::parse(text));
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;
-  } catch (const std::out_of_range&) {
-    return std::nullopt;
-  }
-}
-
-std::vector<std::string> differences(const Provenance& one, const Provenance& other) {
-  std::vector<std::string> found;
-  compare("version", one.version, other.version, found);
-  compare("git revision", one.git_revision, other.git_revision, found);
-  compare("compiler", one.compiler, other.compiler, found);
-  compare("Embree", one.embree, other.embree, found);
-  compare("seed", std::to_string(one.seed), std::to_string(other.seed), found);
-  compare("number of runs in the study", std::to_string(one.study_runs), std::to_string(other.study_runs), found);
-  compare_inputs(one.inputs, other.inputs, found);
-  if (found.empty() && one.resolved_script != other.resolved_script) found.emplace_back("resolved script");
-  return found;
-}
-
-std::vector<HashedFile> named(const std::vector<InputFile>& files) {
-  std::vector<HashedFile> result;
-  for (const InputFile& file : files) result.push_back({name_of_input(file.path), file.sha256});
-  return result;
-}
-
-std::string to_json(const Manifest& manifest, int indent) {
-  return to_tree(manifest).dump(indent, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-Manifest manifest_from_json(const std::string& text, const std::string& name) {
-  try {
-    const ordered_json tree = ordered_json::parse(text);
-    if (const int version = tree.at("pirsim_manifest").get<int>(); version != format_version) {
-      throw Error(ErrorCode::input, Where{name},
-                  "manifest of format " + std::to_string(version) + "; this pirsim reads format " +
-                      std::to_string(format_version));
-    }
-    return from_tree(tree);
-  } catch (const nlohmann::json::exception&) {
-    throw Error(ErrorCode::input, Where{name}, "is no manifest of pirsim, or is damaged");
-  } catch (const std::out_of_range& fault) {
-    throw Error(ErrorCode::input, Where{name}, std::string("is damaged: it names ") + fault.what());
-  }
-}
-
-std::filesystem::path manifest_path(const std::filesystem::path& data_file) {
-  std::filesystem::path path = data_file;
-  return path += ".json";
-}
-
-void write_manifest(const std::filesystem::path& file, const Manifest& manifest) {
-  AtomicFile out(file);
-  out.stream() << to_json(manifest, 2) << '\n';
-  out.commit();
-}
-
-Manifest read_manifest(const std::filesystem::path& file) {
-  constexpr std::size_t max_bytes = 1'000'000'000;  // a script with all of its trials written out, and every failed run
-  return manifest_from_json(read_text_file(file, max_bytes), file.string());
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 constexpr std::size_t block = 1U << 18U;
@@ -439,6 +311,126 @@ std::optional<Mark> last_mark(const Journal::Content& journal, const fs::path& f
 }
 
 }  // namespace
+
+void add_csv(std::string& line, const Cell& cell, int decimals) {
+  const auto add_number = [&](auto number) {
+    std::array<char, 32> text;
+    line.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr);
+  };
+  std::visit(Visitor{[](std::monostate) {}, [&](std::int64_t number) { add_number(number); },
+                     [&](double number) {
+                       const double scale = decimals < 0 ? 1.0 : std::pow(10.0, decimals);
+                       add_number(decimals < 0 ? number : std::round(scale * number) / scale);
+                     },
+                     [&](std::string_view text) {
+                       if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+                         line += text;
+                       } else {
+                         line += csv_field(text);
+                       }
+                     },
+                     [&](std::span<const std::uint8_t> bits) {
+                       for (const std::uint8_t bit : bits) line += bit != 0 ? '1' : '0';
+                     }},
+             cell);
+}
+
+RunNotes& RunNotes::operator+=(const RunNotes& other) {
+  passes_through += other.passes_through;
+  if (first_pass.empty()) first_pass = other.first_pass;
+  seats_changed += other.seats_changed;
+  seats_missed += other.seats_missed;
+  waits_outside += other.waits_outside;
+  if (first_wait.empty()) first_wait = other.first_wait;
+  failed.insert(failed.end(), other.failed.begin(), other.failed.end());
+  return *this;
+}
+
+bool RunNotes::empty() const noexcept {
+  return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && waits_outside == 0 && failed.empty();
+}
+
+std::string RunNotes::remarks() const {
+  std::string text;
+  const auto tell = [&](std::uint64_t n, const char* what) {
+    if (n > 0) text += (text.empty() ? "" : " ") + std::string(what) + std::to_string(n) + '.';
+  };
+  tell(failed.size(), "Runs that failed and are left out: ");
+  tell(passes_through, "Times that a person who was held up walked through others: ");
+  tell(seats_changed, "Times that a person took another seat: ");
+  tell(seats_missed, "Times that a person stayed without a seat: ");
+  tell(waits_outside, "Times that a person waited outside for a seat that was taken: ");
+  return text;
+}
+
+std::string to_json(const RunNotes& notes) {
+  return tree_of(notes).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::optional<RunNotes> notes_from_json(const std::string& text) {
+  try {
+    return notes_from(ordered_json::parse(text));
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<std::string> differences(const Provenance& one, const Provenance& other) {
+  std::vector<std::string> found;
+  compare("version", one.version, other.version, found);
+  compare("git revision", one.git_revision, other.git_revision, found);
+  compare("compiler", one.compiler, other.compiler, found);
+  compare("Embree", one.embree, other.embree, found);
+  compare("seed", std::to_string(one.seed), std::to_string(other.seed), found);
+  compare("number of runs in the study", std::to_string(one.study_runs), std::to_string(other.study_runs), found);
+  compare_inputs(one.inputs, other.inputs, found);
+  if (found.empty() && one.resolved_script != other.resolved_script) found.emplace_back("resolved script");
+  return found;
+}
+
+std::vector<HashedFile> named(const std::vector<InputFile>& files) {
+  std::vector<HashedFile> result;
+  for (const InputFile& file : files) result.push_back({name_of_input(file.path), file.sha256});
+  return result;
+}
+
+std::string to_json(const Manifest& manifest, int indent) {
+  return to_tree(manifest).dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+Manifest manifest_from_json(const std::string& text, const std::string& name) {
+  try {
+    const ordered_json tree = ordered_json::parse(text);
+    if (const int version = tree.at("pirsim_manifest").get<int>(); version != format_version) {
+      throw Error(ErrorCode::input, Where{name},
+                  "manifest of format " + std::to_string(version) + "; this pirsim reads format " +
+                      std::to_string(format_version));
+    }
+    return from_tree(tree);
+  } catch (const nlohmann::json::exception&) {
+    throw Error(ErrorCode::input, Where{name}, "is no manifest of pirsim, or is damaged");
+  } catch (const std::out_of_range& fault) {
+    throw Error(ErrorCode::input, Where{name}, std::string("is damaged: it names ") + fault.what());
+  }
+}
+
+std::filesystem::path manifest_path(const std::filesystem::path& data_file) {
+  std::filesystem::path path = data_file;
+  return path += ".json";
+}
+
+void write_manifest(const std::filesystem::path& file, const Manifest& manifest) {
+  AtomicFile out(file);
+  out.stream() << to_json(manifest, 2) << '\n';
+  out.commit();
+}
+
+Manifest read_manifest(const std::filesystem::path& file) {
+  constexpr std::size_t max_bytes = 1'000'000'000;  // a script with all of its trials written out, and every failed run
+  return manifest_from_json(read_text_file(file, max_bytes), file.string());
+}
 
 struct RowFile::Work {
   fs::path file, partial_path, journal_path;

@@ -63,7 +63,7 @@ struct AreaSums {
 /// sensors.
 class Summary {
  public:
-  /// measured: cells of other trials or sensors are left out; see unmatched().
+  /// measured: cells of other trials or sensors are left out.
   Summary(std::vector<std::string> trials, std::vector<std::string> sensors, std::vector<MeasuredCell> measured = {});
 
   /// counts: (n_sensors) windows with motion of one run. areas: the same for all runs. Throws Error(usage) for a trial
@@ -74,8 +74,6 @@ class Summary {
   [[nodiscard]] OverallSummary overall() const;
   /// The figures of the published simulation, from its ranges and means; none if the measured cells have none.
   [[nodiscard]] std::optional<OverallSummary> published() const;
-  /// Measured cells whose trial or sensor the study doesn't have.
-  [[nodiscard]] const std::vector<MeasuredCell>& unmatched() const noexcept { return unmatched_; }
   /// Over all trials; empty without areas.
   [[nodiscard]] const std::vector<AreaSums>& areas() const noexcept { return areas_; }
   [[nodiscard]] std::int64_t runs() const noexcept { return runs_; }
@@ -86,7 +84,6 @@ class Summary {
   std::vector<std::string> trials_, sensors_;
   std::vector<Tally> counts_;                          ///< (n_cells)
   std::vector<std::optional<MeasuredCell>> measured_;  ///< (n_cells)
-  std::vector<MeasuredCell> unmatched_;
   std::vector<AreaSums> areas_;
   std::int64_t runs_ = 0;
 };

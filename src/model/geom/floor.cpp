@@ -31,6 +31,60 @@ Vec2 point_inside(const std::vector<Vec2>& loop) noexcept {
   return loop[0] + 0.5 * along + (signed_area(loop) > 0.0 ? 1e-6 : -1e-6) * left;
 }
 
+/// Of an outline, from its lower to its higher z.
+struct Edge {
+  Vec2 from, to;
+  int owner;  ///< 0 or 1
+  [[nodiscard]] double x_at(double z) const noexcept {
+    return from.x + (z - from.y) * (to.x - from.x) / (to.y - from.y);
+  }
+  [[nodiscard]] bool spans(double z) const noexcept { return from.y <= z && z < to.y; }
+};
+
+/// Those that have a part between two z; level ones bound nothing of a strip along x.
+void add_edges(const FloorArea& area, int owner, double from_z, double to_z, std::vector<Edge>& edges) {
+  for (const std::vector<Vec2>& loop : area.loops()) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      Vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
+      if (a.y > b.y) std::swap(a, b);
+      if (a.y < b.y && a.y < to_z && b.y > from_z) edges.push_back({a, b, owner});
+    }
+  }
+}
+
+/// Where two edges that both span some z cross, if they do.
+std::optional<double> z_of_crossing(const Edge& a, const Edge& b) noexcept {
+  const double from_z = std::max(a.from.y, b.from.y), to_z = std::min(a.to.y, b.to.y);
+  if (from_z >= to_z) return std::nullopt;
+  const double before = a.x_at(from_z) - b.x_at(from_z), after = a.x_at(to_z) - b.x_at(to_z);
+  if (!((before < 0.0 && after > 0.0) || (before > 0.0 && after < 0.0))) return std::nullopt;
+  return from_z + (to_z - from_z) * before / (before - after);
+}
+
+/// Of the line along x at this z, how much is inside both.
+double common_m(const std::vector<Edge>& edges, double z, std::vector<std::pair<double, int>>& crossed) {
+  crossed.clear();
+  for (const Edge& edge : edges) {
+    if (edge.spans(z)) crossed.emplace_back(edge.x_at(z), edge.owner);
+  }
+  std::ranges::sort(crossed);
+  bool inside[2] = {false, false};
+  double length = 0.0, since = 0.0;
+  for (const auto& [x, owner] : crossed) {
+    if (inside[0] && inside[1]) length += x - since;
+    inside[owner] = !inside[owner];
+    since = x;
+  }
+  return length;
+}
+
+constexpr double least_rest_m2 = 0.01;  // assumed: less is rounding along the borders (0.001-0.05 would do)
+constexpr double gap_m = 0.001;         // assumed: as narrow a gap between two parts is rounding, too
+
+bool box_holds(const FloorArea& area, const Vec2& p) noexcept {
+  return area.lower().x <= p.x && p.x <= area.upper().x && area.lower().y <= p.y && p.y <= area.upper().y;
+}
+
 }  // namespace
 
 FloorArea::FloorArea(std::vector<std::vector<Vec2>> loops, double height_m)
@@ -123,57 +177,6 @@ Vec2 roomiest_point(const FloorArea& area) {
   return best;
 }
 
-namespace {
-
-/// Of an outline, from its lower to its higher z.
-struct Edge {
-  Vec2 from, to;
-  int owner;  ///< 0 or 1
-  [[nodiscard]] double x_at(double z) const noexcept {
-    return from.x + (z - from.y) * (to.x - from.x) / (to.y - from.y);
-  }
-  [[nodiscard]] bool spans(double z) const noexcept { return from.y <= z && z < to.y; }
-};
-
-/// Those that have a part between two z; level ones bound nothing of a strip along x.
-void add_edges(const FloorArea& area, int owner, double from_z, double to_z, std::vector<Edge>& edges) {
-  for (const std::vector<Vec2>& loop : area.loops()) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      Vec2 a = loop[i], b = loop[(i + 1) % loop.size()];
-      if (a.y > b.y) std::swap(a, b);
-      if (a.y < b.y && a.y < to_z && b.y > from_z) edges.push_back({a, b, owner});
-    }
-  }
-}
-
-/// Where two edges that both span some z cross, if they do.
-std::optional<double> z_of_crossing(const Edge& a, const Edge& b) noexcept {
-  const double from_z = std::max(a.from.y, b.from.y), to_z = std::min(a.to.y, b.to.y);
-  if (from_z >= to_z) return std::nullopt;
-  const double before = a.x_at(from_z) - b.x_at(from_z), after = a.x_at(to_z) - b.x_at(to_z);
-  if (!((before < 0.0 && after > 0.0) || (before > 0.0 && after < 0.0))) return std::nullopt;
-  return from_z + (to_z - from_z) * before / (before - after);
-}
-
-/// Of the line along x at this z, how much is inside both.
-double common_m(const std::vector<Edge>& edges, double z, std::vector<std::pair<double, int>>& crossed) {
-  crossed.clear();
-  for (const Edge& edge : edges) {
-    if (edge.spans(z)) crossed.emplace_back(edge.x_at(z), edge.owner);
-  }
-  std::ranges::sort(crossed);
-  bool inside[2] = {false, false};
-  double length = 0.0, since = 0.0;
-  for (const auto& [x, owner] : crossed) {
-    if (inside[0] && inside[1]) length += x - since;
-    inside[owner] = !inside[owner];
-    since = x;
-  }
-  return length;
-}
-
-}  // namespace
-
 double common_m2(const FloorArea& a, const FloorArea& b) {
   if (a.empty() || b.empty()) return 0.0;
   const double from_z = std::max(a.lower().y, b.lower().y), to_z = std::min(a.upper().y, b.upper().y);
@@ -202,17 +205,6 @@ double common_m2(const FloorArea& a, const FloorArea& b) {
   }
   return sum;
 }
-
-namespace {
-
-constexpr double least_rest_m2 = 0.01;  // assumed: less is rounding along the borders (0.001-0.05 would do)
-constexpr double gap_m = 0.001;         // assumed: as narrow a gap between two parts is rounding, too
-
-bool box_holds(const FloorArea& area, const Vec2& p) noexcept {
-  return area.lower().x <= p.x && p.x <= area.upper().x && area.lower().y <= p.y && p.y <= area.upper().y;
-}
-
-}  // namespace
 
 FloorParts::FloorParts(const FloorArea& floor, std::vector<FloorArea> parts) : parts_(std::move(parts)) {
   if (parts_.empty()) return;

@@ -47,34 +47,6 @@ std::optional<std::size_t> area_before(const Frame& world_from_sensor, const std
   return std::nullopt;
 }
 
-}  // namespace
-
-Areas::Areas(const SceneSpec& scene) : parts_(scene.floor, outlines_of(scene.areas)), names_(ids_of(scene.areas)) {
-  if (parts_.has_rest()) names_.emplace_back(elsewhere);
-  for (const SensorSpec& sensor : scene.sensors) {
-    const auto said = std::ranges::find(scene.areas, sensor.area.value_or(""), &AreaSpec::id);
-    of_sensors_.push_back(said != scene.areas.end()
-                              ? std::optional(static_cast<std::size_t>(said - scene.areas.begin()))
-                              : area_before(sensor.world_from_sensor, scene.areas));
-  }
-}
-
-std::string_view Areas::name_of_sensor(std::size_t sensor) const noexcept {
-  if (empty()) return {};
-  const std::optional<std::size_t> area = of_sensors_[sensor];
-  return area ? std::string_view(names_[*area]) : elsewhere;
-}
-
-std::vector<std::size_t> Areas::sensors_of(std::size_t area) const {
-  std::vector<std::size_t> sensors;
-  for (std::size_t i = 0; i < of_sensors_.size(); ++i) {
-    if (of_sensors_[i] == area) sensors.push_back(i);
-  }
-  return sensors;
-}
-
-namespace {
-
 struct Unit {
   const char* name;
   double metres;
@@ -142,31 +114,6 @@ const Unit* likeliest_unit(const Sizes& sizes) {
 std::string spans(const Vec2& floor, int decimals) {
   return fixed(floor.x, decimals) + " m x " + fixed(floor.y, decimals) + " m";
 }
-
-}  // namespace
-
-std::optional<std::string> doubt_of_unit(const SceneSpec& scene) {
-  Sizes sizes = sizes_of(scene);
-  const bool is_high = sizes.height && *sizes.height > highest_room_m;
-  if (!is_long(sizes) && !is_high && !(sizes.seat && *sizes.seat > highest_seat_m)) return std::nullopt;
-  const Unit* unit = likeliest_unit(sizes);
-  if (unit == nullptr && is_long(sizes)) {  // only the floor is, then
-    sizes.height = sizes.seat = std::nullopt;
-    unit = likeliest_unit(sizes);
-  }
-  if (unit == nullptr) {
-    if (!is_long(sizes)) return std::nullopt;
-    return "the floor spans " + spans(sizes.floor, 0) + ": glTF's unit is the metre";
-  }
-  const auto high = [&](double metres, int decimals) {
-    return sizes.height ? " and the room is " + fixed(*sizes.height * metres, decimals) + " m high" : "";
-  };
-  return "the floor spans " + spans(sizes.floor, 0) + high(1.0, 0) + ": " + unit->name + "? In " + unit->name +
-         " the floor spans " + spans(sizes.floor * unit->metres, 1) + high(unit->metres, 1) +
-         "; glTF's unit is the metre";
-}
-
-namespace {
 
 constexpr double least_upright = 0.9962;  // cos 5 deg; assumed: a seat or doorway tilted more is a mistake of axes
 
@@ -340,80 +287,6 @@ bool cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noexcept 
   return opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b));
 }
 
-}  // namespace
-
-std::string name_fault(std::string_view name) {
-  const auto fits = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
-  };
-  if (!name.empty() && name.front() != '.' && std::ranges::all_of(name, fits)) return {};
-  return "it needs letters, digits, '_', '-' or '.'";
-}
-
-std::string use_fault(const std::string& use) {
-  const std::vector<std::string> known(place_uses.begin(), place_uses.end());
-  if (std::ranges::find(known, use) != known.end()) return {};
-  return "'" + use + "' isn't a use of a place" + near_or_all(use, known);
-}
-
-std::string column_fault(std::string_view id, const std::string& type) {
-  const std::string named = type + " id '" + std::string(id) + "' ";
-  if (is_column_of_area(id)) return named + "begins as the columns of areas do: '" + std::string(area_prefix) + "'";
-  if (is_column_of_door(id)) return named + "begins as the columns of doors do: '" + std::string(door_prefix) + "'";
-  return is_column_name(id) ? named + "is the name of a column of rows" : "";
-}
-
-std::string Names::fault_of_adding(const std::string& name) {
-  return names_.insert(name).second ? std::string() : "a second " + kind_ + " '" + name + "'";
-}
-
-bool is_in_world(const Vec3& place) noexcept {
-  constexpr NumberRange world = accepted::in_world_m;
-  return world.holds(place.x) && world.holds(place.y) && world.holds(place.z);
-}
-
-bool is_upright(const Frame& frame) noexcept { return frame.up().y >= least_upright; }
-
-bool outlines_cross(const std::vector<Vec2>& first, const std::vector<Vec2>& second) noexcept {
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    for (std::size_t j = 0; j < second.size(); ++j) {
-      if (cross(first[i], first[(i + 1) % first.size()], second[j], second[(j + 1) % second.size()])) return true;
-    }
-  }
-  return false;
-}
-
-std::string too_many_corners(const std::string& what) {
-  return "the outline of " + what + "s has more than " + std::to_string(limits::floor_corners) + " corners";
-}
-
-std::string outline_fault(const FloorArea& floor, const std::string& what) {
-  const auto& loops = floor.loops();
-  const std::string the = "the " + what;
-  std::size_t n_corners = 0;
-  for (const auto& loop : loops) {
-    if (loop.size() < 3) return the + " has an outline of fewer than three corners";
-    n_corners += loop.size();
-    for (const Vec2& p : loop) {
-      if (!accepted::in_world_m.holds(p.x) || !accepted::in_world_m.holds(p.y))
-        return the + " reaches more than 100 km from the origin";
-    }
-  }
-  if (n_corners > limits::floor_corners) return too_many_corners(what);
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      if (outlines_cross(loops[i], loops[j])) return "the outline of " + the + " crosses itself";
-    }
-  }
-  return floor.area_m2() < 1e-6 ? the + " has no area" : "";
-}
-
-void check(const SceneSpec& scene, Diagnostics& diagnostics) { SceneCheck(scene, diagnostics).run(); }
-
-// What areas must hold among each other and on their floor.
-
-namespace {
-
 constexpr double least_common_m2 = 1e-4;  // assumed: less is rounding along a common border (1e-6 to 1e-3 would do)
 constexpr double flat_m = 0.1;            // assumed: areas may be drawn a little above the floor, to be seen (0.02-0.2)
 
@@ -426,40 +299,6 @@ std::string off_floor_fault(const AreaSpec& area, const FloorArea& floor) {
     return named(area) + " lies " + fixed(std::abs(up_m), 2) + " m " + (up_m > 0.0 ? "above" : "below") + " the floor";
   return common_m2(area.outline, floor) < least_common_m2 ? named(area) + " lies off the floor" : "";
 }
-
-}  // namespace
-
-std::string area_id_fault(const std::string& id) {
-  if (id == elsewhere) return "area id '" + id + "' is what pirsim calls the floor that is in no area";
-  return column_fault(id, "area");
-}
-
-std::string area_fault(const SensorSpec& sensor, const std::vector<AreaSpec>& areas) {
-  if (!sensor.area || std::ranges::find(areas, *sensor.area, &AreaSpec::id) != areas.end()) return {};
-  return "there is no area '" + *sensor.area + "'" +
-         (areas.empty() ? ": the scene has none" : near_or_all(*sensor.area, ids_of(areas)));
-}
-
-void check_together(const std::vector<AreaSpec>& areas, const FloorArea& floor,
-                    const std::function<void(std::size_t, const std::string&)>& tell) {
-  std::size_t n_corners = 0;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    for (const auto& loop : areas[i].outline.loops()) n_corners += loop.size();
-    if (n_corners > limits::floor_corners) return tell(i, too_many_corners("area"));
-  }
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    const std::string fault = off_floor_fault(areas[i], floor);
-    if (!fault.empty()) tell(i, fault);
-    for (std::size_t k = 0; k < i; ++k) {
-      const double common = common_m2(areas[k].outline, areas[i].outline);
-      if (common < least_common_m2) continue;
-      tell(i, named(areas[i]) + " overlaps " + named(areas[k]) + " by " + fixed(common, common < 0.01 ? 4 : 2) + " m2");
-      break;  // the first is enough to find the fault
-    }
-  }
-}
-
-namespace {
 
 // All assumed. Nobody runs faster (10-15); somebody who crosses a room is faster than the walk (0.2-0.4).
 constexpr double fastest_m_s = 12.0, slowest_walk_m_s = 0.3, walk_m = 2.0;
@@ -580,22 +419,6 @@ class Doubts {
   double longest_step_s_ = 0.0, shortest_step_s_ = std::numeric_limits<double>::max(), farthest_m_ = 0.0;
 };
 
-}  // namespace
-
-std::vector<Issue> doubts_of_positions(const SceneSpec& scene, const ScriptSpec& script) {
-  Diagnostics remarks;
-  std::set<std::string> told;
-  for (const TrialSpec& trial : script.trials) {
-    if (!trial.occupancy || !trial.occupancy->positions || trial.occupancy->positions->tracks.empty()) continue;
-    const PositionsSpec& positions = *trial.occupancy->positions;
-    const std::optional<std::string> text = Doubts(scene.floor, positions).text();
-    if (text && told.insert(*text).second) remarks.warning(positions.tracks.front().where, "positions: " + *text);
-  }
-  return remarks.issues();
-}
-
-namespace {
-
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 void check(const ClusterSpec& cluster, const SpecPath& path, SpecFaults& faults) {
@@ -612,6 +435,163 @@ void check(const ClusterSpec& cluster, const SpecPath& path, SpecFaults& faults)
 }
 
 }  // namespace
+
+Areas::Areas(const SceneSpec& scene) : parts_(scene.floor, outlines_of(scene.areas)), names_(ids_of(scene.areas)) {
+  if (parts_.has_rest()) names_.emplace_back(elsewhere);
+  for (const SensorSpec& sensor : scene.sensors) {
+    const auto said = std::ranges::find(scene.areas, sensor.area.value_or(""), &AreaSpec::id);
+    of_sensors_.push_back(said != scene.areas.end()
+                              ? std::optional(static_cast<std::size_t>(said - scene.areas.begin()))
+                              : area_before(sensor.world_from_sensor, scene.areas));
+  }
+}
+
+std::string_view Areas::name_of_sensor(std::size_t sensor) const noexcept {
+  if (empty()) return {};
+  const std::optional<std::size_t> area = of_sensors_[sensor];
+  return area ? std::string_view(names_[*area]) : elsewhere;
+}
+
+std::vector<std::size_t> Areas::sensors_of(std::size_t area) const {
+  std::vector<std::size_t> sensors;
+  for (std::size_t i = 0; i < of_sensors_.size(); ++i) {
+    if (of_sensors_[i] == area) sensors.push_back(i);
+  }
+  return sensors;
+}
+
+std::optional<std::string> doubt_of_unit(const SceneSpec& scene) {
+  Sizes sizes = sizes_of(scene);
+  const bool is_high = sizes.height && *sizes.height > highest_room_m;
+  if (!is_long(sizes) && !is_high && !(sizes.seat && *sizes.seat > highest_seat_m)) return std::nullopt;
+  const Unit* unit = likeliest_unit(sizes);
+  if (unit == nullptr && is_long(sizes)) {  // only the floor is, then
+    sizes.height = sizes.seat = std::nullopt;
+    unit = likeliest_unit(sizes);
+  }
+  if (unit == nullptr) {
+    if (!is_long(sizes)) return std::nullopt;
+    return "the floor spans " + spans(sizes.floor, 0) + ": glTF's unit is the metre";
+  }
+  const auto high = [&](double metres, int decimals) {
+    return sizes.height ? " and the room is " + fixed(*sizes.height * metres, decimals) + " m high" : "";
+  };
+  return "the floor spans " + spans(sizes.floor, 0) + high(1.0, 0) + ": " + unit->name + "? In " + unit->name +
+         " the floor spans " + spans(sizes.floor * unit->metres, 1) + high(unit->metres, 1) +
+         "; glTF's unit is the metre";
+}
+
+std::string name_fault(std::string_view name) {
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  if (!name.empty() && name.front() != '.' && std::ranges::all_of(name, fits)) return {};
+  return "it needs letters, digits, '_', '-' or '.'";
+}
+
+std::string use_fault(const std::string& use) {
+  const std::vector<std::string> known(place_uses.begin(), place_uses.end());
+  if (std::ranges::find(known, use) != known.end()) return {};
+  return "'" + use + "' isn't a use of a place" + near_or_all(use, known);
+}
+
+std::string column_fault(std::string_view id, const std::string& type) {
+  const std::string named = type + " id '" + std::string(id) + "' ";
+  if (is_column_of_area(id)) return named + "begins as the columns of areas do: '" + std::string(area_prefix) + "'";
+  if (is_column_of_door(id)) return named + "begins as the columns of doors do: '" + std::string(door_prefix) + "'";
+  return is_column_name(id) ? named + "is the name of a column of rows" : "";
+}
+
+std::string Names::fault_of_adding(const std::string& name) {
+  return names_.insert(name).second ? std::string() : "a second " + kind_ + " '" + name + "'";
+}
+
+bool is_in_world(const Vec3& place) noexcept {
+  constexpr NumberRange world = accepted::in_world_m;
+  return world.holds(place.x) && world.holds(place.y) && world.holds(place.z);
+}
+
+bool is_upright(const Frame& frame) noexcept { return frame.up().y >= least_upright; }
+
+bool outlines_cross(const std::vector<Vec2>& first, const std::vector<Vec2>& second) noexcept {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      if (cross(first[i], first[(i + 1) % first.size()], second[j], second[(j + 1) % second.size()])) return true;
+    }
+  }
+  return false;
+}
+
+std::string too_many_corners(const std::string& what) {
+  return "the outline of " + what + "s has more than " + std::to_string(limits::floor_corners) + " corners";
+}
+
+std::string outline_fault(const FloorArea& floor, const std::string& what) {
+  const auto& loops = floor.loops();
+  const std::string the = "the " + what;
+  std::size_t n_corners = 0;
+  for (const auto& loop : loops) {
+    if (loop.size() < 3) return the + " has an outline of fewer than three corners";
+    n_corners += loop.size();
+    for (const Vec2& p : loop) {
+      if (!accepted::in_world_m.holds(p.x) || !accepted::in_world_m.holds(p.y))
+        return the + " reaches more than 100 km from the origin";
+    }
+  }
+  if (n_corners > limits::floor_corners) return too_many_corners(what);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      if (outlines_cross(loops[i], loops[j])) return "the outline of " + the + " crosses itself";
+    }
+  }
+  return floor.area_m2() < 1e-6 ? the + " has no area" : "";
+}
+
+void check(const SceneSpec& scene, Diagnostics& diagnostics) { SceneCheck(scene, diagnostics).run(); }
+
+// What areas must hold among each other and on their floor.
+
+std::string area_id_fault(const std::string& id) {
+  if (id == elsewhere) return "area id '" + id + "' is what pirsim calls the floor that is in no area";
+  return column_fault(id, "area");
+}
+
+std::string area_fault(const SensorSpec& sensor, const std::vector<AreaSpec>& areas) {
+  if (!sensor.area || std::ranges::find(areas, *sensor.area, &AreaSpec::id) != areas.end()) return {};
+  return "there is no area '" + *sensor.area + "'" +
+         (areas.empty() ? ": the scene has none" : near_or_all(*sensor.area, ids_of(areas)));
+}
+
+void check_together(const std::vector<AreaSpec>& areas, const FloorArea& floor,
+                    const std::function<void(std::size_t, const std::string&)>& tell) {
+  std::size_t n_corners = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    for (const auto& loop : areas[i].outline.loops()) n_corners += loop.size();
+    if (n_corners > limits::floor_corners) return tell(i, too_many_corners("area"));
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const std::string fault = off_floor_fault(areas[i], floor);
+    if (!fault.empty()) tell(i, fault);
+    for (std::size_t k = 0; k < i; ++k) {
+      const double common = common_m2(areas[k].outline, areas[i].outline);
+      if (common < least_common_m2) continue;
+      tell(i, named(areas[i]) + " overlaps " + named(areas[k]) + " by " + fixed(common, common < 0.01 ? 4 : 2) + " m2");
+      break;  // the first is enough to find the fault
+    }
+  }
+}
+
+std::vector<Issue> doubts_of_positions(const SceneSpec& scene, const ScriptSpec& script) {
+  Diagnostics remarks;
+  std::set<std::string> told;
+  for (const TrialSpec& trial : script.trials) {
+    if (!trial.occupancy || !trial.occupancy->positions || trial.occupancy->positions->tracks.empty()) continue;
+    const PositionsSpec& positions = *trial.occupancy->positions;
+    const std::optional<std::string> text = Doubts(scene.floor, positions).text();
+    if (text && told.insert(*text).second) remarks.warning(positions.tracks.front().where, "positions: " + *text);
+  }
+  return remarks.issues();
+}
 
 void check_together(const AmplifierSpec& amplifier, const TellFault& tell) {
   if (amplifier.low_hz >= amplifier.high_hz) tell("high_hz", "expected high_hz above low_hz");

@@ -39,73 +39,6 @@ std::vector<double> moments_of(const OccupancySpec& occupancy) {
   return moments;
 }
 
-}  // namespace
-
-bool are_as_many(const CountsSpec& counts, std::size_t k) {
-  return counts.people[k] == counts.people[k - 1] &&
-         std::ranges::all_of(counts.areas, [k](const auto& area) { return area.people[k] == area.people[k - 1]; });
-}
-
-std::optional<DataSpan> data_span(const OccupancySpec& occupancy) {
-  const std::vector<double> moments = moments_of(occupancy);
-  if (moments.empty()) return std::nullopt;
-  return DataSpan{moments.front(), moments.back()};
-}
-
-const std::string& data_begin(const OccupancySpec& occupancy) noexcept {
-  static const std::string none;
-  return occupancy.counts      ? occupancy.counts->begin
-         : occupancy.places    ? occupancy.places->begin
-         : occupancy.positions ? occupancy.positions->begin
-                               : none;
-}
-
-const std::string& data_file(const OccupancySpec& occupancy) noexcept {
-  static const std::string none;
-  return occupancy.counts      ? occupancy.counts->file
-         : occupancy.places    ? occupancy.places->file
-         : occupancy.positions ? occupancy.positions->file
-                               : none;
-}
-std::string& data_file(OccupancySpec& occupancy) noexcept {
-  return const_cast<std::string&>(data_file(std::as_const(occupancy)));
-}
-
-OccupancyRuns runs_of(const OccupancySpec& occupancy, const std::string& begin) {
-  const std::optional<RunClock> own = clock_from(data_begin(occupancy)), given = clock_from(begin);
-  const std::optional<RunClock> data = own ? own : given;
-  const DataSpan span = data_span(occupancy).value_or(DataSpan{});
-  if (!has_days(occupancy)) {
-    // Seconds of the run begin with it; a clock's moments where the script says, or with the first of them.
-    const double from_s = own && given ? static_cast<double>(given->begin_s - own->begin_s) : own ? span.first_s : 0.0;
-    std::optional<RunClock> clock = data;
-    if (clock) clock->begin_s += std::llround(from_s);
-    return {clock, span.last_s - from_s, {from_s}};
-  }
-  const double from_s = 3600.0 * occupancy.from_h.value_or(0.0), to_s = 3600.0 * occupancy.to_h.value_or(24.0);
-  OccupancyRuns runs{data, std::round(to_s - from_s), {}};
-  const double midnight_s = data->begin_second();  // before second 0 of the data
-  double last_day = -1.0;
-  for (const double moment_s : moments_of(occupancy)) {
-    const double day = std::floor((moment_s + midnight_s) / seconds_a_day);
-    const double in_day_s = moment_s + midnight_s - day * seconds_a_day;
-    if (day == last_day || in_day_s < from_s || in_day_s > to_s) continue;
-    runs.begins_s.push_back(day * seconds_a_day - midnight_s + from_s);
-    last_day = day;
-  }
-  if (!runs.begins_s.empty()) runs.clock->begin_s += std::llround(runs.begins_s.front());
-  return runs;
-}
-
-std::vector<std::string> seats_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
-  return occupancy.seats.empty() ? ids_of(scene.seats) : occupancy.seats;
-}
-std::vector<std::string> entrances_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
-  return occupancy.entrances.empty() ? ids_of(scene.entrances) : occupancy.entrances;
-}
-
-namespace {
-
 /// What a row's phase can be: with a schedule the use of the room, else what the first person does.
 std::vector<std::string> phases_of(const ScriptSpec& script) {
   std::set<std::string> phases;
@@ -232,82 +165,6 @@ class ScriptCheck {
   SpecFaults faults_;
 };
 
-}  // namespace
-
-std::string activity_fault(const PersonSpec& person, const ScriptedAction& action) {
-  return std::visit(
-      [&](const auto& what) -> std::string {
-        if constexpr (requires { what.activity; }) {
-          if (!what.activity) return {};
-          if (person.style != MotionStyle::natural) return "an activity needs `style: natural` of the person";
-          const auto known = facts_of(what).may_be_asked;
-          if (std::ranges::find(known, *what.activity) == known.end()) return "expected one of " + names_of(known);
-        }
-        return {};
-      },
-      action.what);
-}
-
-std::string body_part_fault(const std::string& part) {
-  const std::vector<std::string> parts(body_part_names.begin(), body_part_names.end());
-  if (std::ranges::find(parts, part) != parts.end()) return {};
-  return "no part of the body is called '" + part + "'" + near_or_all(part, parts);
-}
-
-std::string body_mesh_fault(const TriMesh& mesh) {
-  constexpr double farthest_m = 3.0;  // assumed; 2.5 to 10 would do: nobody's part is longer, one in millimetres is
-  const auto is_near = [](const Vec3& p) { return glm::length(p) <= farthest_m; };
-  if (std::ranges::all_of(mesh.positions, is_near)) return {};
-  return "its mesh reaches more than 3 m from the part's origin; metres are expected, in the part's frame";
-}
-
-void check_together(const WarmthSpec& warmth, const TellFault& tell) {
-  const auto tell_if = [&](std::string_view field, const std::string& fault) {
-    if (!fault.empty()) tell(field, fault);
-  };
-  for (const std::string& part : warmth.bare) tell_if("bare", body_part_fault(part));
-  for (const auto& [part, temperature_c] : warmth.parts_c) {
-    tell_if("parts_c", body_part_fault(part));
-    if (!accepted::skin_c.holds(temperature_c)) tell("parts_c", part + ": expected " + accepted::skin_c.text());
-  }
-}
-
-void check_together(const TrialSpec& trial, const TellFault& tell) {
-  if (trial.schedule && trial.duration_s) {
-    tell("duration_s", "a run lasts from its `from` to its `to`: leave out duration_s");
-  }
-  if (trial.occupancy && has_days(*trial.occupancy) && trial.duration_s)
-    tell("duration_s", "a run lasts from `from` to `to` of its occupancy: leave out duration_s");
-  if (trial.schedule && trial.occupancy)
-    tell("occupancy", "a schedule says who is there as well: leave out one of them");
-}
-
-void check_phases(const ScriptSpec& script, const std::function<void(std::size_t, const std::string&)>& tell) {
-  if (script.summary.phases.empty()) return;
-  const std::vector<std::string> known = phases_of(script);
-  for (std::size_t i = 0; i < script.summary.phases.size(); ++i) {
-    const std::string& phase = script.summary.phases[i];
-    if (std::ranges::find(known, phase) != known.end()) continue;
-    tell(i, "no run has a phase '" + phase + "'" + near_or_all(phase, known));
-  }
-}
-
-void check_together(const ScriptSpec& script, const TellFault& tell) {
-  const auto has_schedule = [](const TrialSpec& trial) { return trial.schedule.has_value(); };
-  if (!script.begin.empty() && !clock_from(script.begin)) {
-    tell("begin", "expected the date and time at which runs begin, e.g. 2026-03-02T07:00, got '" + script.begin + "'");
-  } else if (!script.begin.empty() && std::ranges::any_of(script.trials, has_schedule)) {
-    tell("begin", "a schedule's `first_day` and `from` say when its runs begin: leave out `begin`");
-  }
-  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
-  if (script.replicates < 0 || script.trials.size() * static_cast<std::size_t>(script.replicates) <= most) return;
-  tell("replicates", "trials times replicates are more than " + std::to_string(most) + " runs");
-}
-
-void check(const ScriptSpec& script, Diagnostics& diagnostics) { ScriptCheck(script, diagnostics).run(); }
-
-namespace {
-
 bool ascend(const std::vector<double>& times_s) {
   constexpr double farthest_s = 1e10;  // 300 years
   return std::ranges::all_of(times_s, [](double t) { return std::abs(t) <= farthest_s; }) &&
@@ -409,7 +266,156 @@ void check_runs(const OccupancySpec& occupancy, const std::string& begin, const 
   }
 }
 
+void check(const MeetingsSpec& meetings, const SpecPath& path, SpecFaults& faults) {
+  faults.fields(meetings, path);
+  faults.together(meetings, path);
+  if (!faults.few(path.field("held"), meetings.held.size(), limits::held_meetings)) return;
+  for (std::size_t i = 0; i < meetings.held.size(); ++i) {
+    const SpecPath held = path.item("held", i);
+    faults.fields(meetings.held[i], held);
+    faults.together(meetings.held[i], held);
+  }
+  check_together(meetings.held, [&](std::size_t i, std::size_t j) {
+    faults.error(path.item("held", i), "overlaps held[" + std::to_string(j) + "], and there is one room");
+  });
+}
+
 }  // namespace
+
+bool are_as_many(const CountsSpec& counts, std::size_t k) {
+  return counts.people[k] == counts.people[k - 1] &&
+         std::ranges::all_of(counts.areas, [k](const auto& area) { return area.people[k] == area.people[k - 1]; });
+}
+
+std::optional<DataSpan> data_span(const OccupancySpec& occupancy) {
+  const std::vector<double> moments = moments_of(occupancy);
+  if (moments.empty()) return std::nullopt;
+  return DataSpan{moments.front(), moments.back()};
+}
+
+const std::string& data_begin(const OccupancySpec& occupancy) noexcept {
+  static const std::string none;
+  return occupancy.counts      ? occupancy.counts->begin
+         : occupancy.places    ? occupancy.places->begin
+         : occupancy.positions ? occupancy.positions->begin
+                               : none;
+}
+
+const std::string& data_file(const OccupancySpec& occupancy) noexcept {
+  static const std::string none;
+  return occupancy.counts      ? occupancy.counts->file
+         : occupancy.places    ? occupancy.places->file
+         : occupancy.positions ? occupancy.positions->file
+                               : none;
+}
+std::string& data_file(OccupancySpec& occupancy) noexcept {
+  return const_cast<std::string&>(data_file(std::as_const(occupancy)));
+}
+
+OccupancyRuns runs_of(const OccupancySpec& occupancy, const std::string& begin) {
+  const std::optional<RunClock> own = clock_from(data_begin(occupancy)), given = clock_from(begin);
+  const std::optional<RunClock> data = own ? own : given;
+  const DataSpan span = data_span(occupancy).value_or(DataSpan{});
+  if (!has_days(occupancy)) {
+    // Seconds of the run begin with it; a clock's moments where the script says, or with the first of them.
+    const double from_s = own && given ? static_cast<double>(given->begin_s - own->begin_s) : own ? span.first_s : 0.0;
+    std::optional<RunClock> clock = data;
+    if (clock) clock->begin_s += std::llround(from_s);
+    return {clock, span.last_s - from_s, {from_s}};
+  }
+  const double from_s = 3600.0 * occupancy.from_h.value_or(0.0), to_s = 3600.0 * occupancy.to_h.value_or(24.0);
+  OccupancyRuns runs{data, std::round(to_s - from_s), {}};
+  const double midnight_s = data->begin_second();  // before second 0 of the data
+  double last_day = -1.0;
+  for (const double moment_s : moments_of(occupancy)) {
+    const double day = std::floor((moment_s + midnight_s) / seconds_a_day);
+    const double in_day_s = moment_s + midnight_s - day * seconds_a_day;
+    if (day == last_day || in_day_s < from_s || in_day_s > to_s) continue;
+    runs.begins_s.push_back(day * seconds_a_day - midnight_s + from_s);
+    last_day = day;
+  }
+  if (!runs.begins_s.empty()) runs.clock->begin_s += std::llround(runs.begins_s.front());
+  return runs;
+}
+
+std::vector<std::string> seats_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
+  return occupancy.seats.empty() ? ids_of(scene.seats) : occupancy.seats;
+}
+std::vector<std::string> entrances_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
+  return occupancy.entrances.empty() ? ids_of(scene.entrances) : occupancy.entrances;
+}
+
+std::string activity_fault(const PersonSpec& person, const ScriptedAction& action) {
+  return std::visit(
+      [&](const auto& what) -> std::string {
+        if constexpr (requires { what.activity; }) {
+          if (!what.activity) return {};
+          if (person.style != MotionStyle::natural) return "an activity needs `style: natural` of the person";
+          const auto known = facts_of(what).may_be_asked;
+          if (std::ranges::find(known, *what.activity) == known.end()) return "expected one of " + names_of(known);
+        }
+        return {};
+      },
+      action.what);
+}
+
+std::string body_part_fault(const std::string& part) {
+  const std::vector<std::string> parts(body_part_names.begin(), body_part_names.end());
+  if (std::ranges::find(parts, part) != parts.end()) return {};
+  return "no part of the body is called '" + part + "'" + near_or_all(part, parts);
+}
+
+std::string body_mesh_fault(const TriMesh& mesh) {
+  constexpr double farthest_m = 3.0;  // assumed; 2.5 to 10 would do: nobody's part is longer, one in millimetres is
+  const auto is_near = [](const Vec3& p) { return glm::length(p) <= farthest_m; };
+  if (std::ranges::all_of(mesh.positions, is_near)) return {};
+  return "its mesh reaches more than 3 m from the part's origin; metres are expected, in the part's frame";
+}
+
+void check_together(const WarmthSpec& warmth, const TellFault& tell) {
+  const auto tell_if = [&](std::string_view field, const std::string& fault) {
+    if (!fault.empty()) tell(field, fault);
+  };
+  for (const std::string& part : warmth.bare) tell_if("bare", body_part_fault(part));
+  for (const auto& [part, temperature_c] : warmth.parts_c) {
+    tell_if("parts_c", body_part_fault(part));
+    if (!accepted::skin_c.holds(temperature_c)) tell("parts_c", part + ": expected " + accepted::skin_c.text());
+  }
+}
+
+void check_together(const TrialSpec& trial, const TellFault& tell) {
+  if (trial.schedule && trial.duration_s) {
+    tell("duration_s", "a run lasts from its `from` to its `to`: leave out duration_s");
+  }
+  if (trial.occupancy && has_days(*trial.occupancy) && trial.duration_s)
+    tell("duration_s", "a run lasts from `from` to `to` of its occupancy: leave out duration_s");
+  if (trial.schedule && trial.occupancy)
+    tell("occupancy", "a schedule says who is there as well: leave out one of them");
+}
+
+void check_phases(const ScriptSpec& script, const std::function<void(std::size_t, const std::string&)>& tell) {
+  if (script.summary.phases.empty()) return;
+  const std::vector<std::string> known = phases_of(script);
+  for (std::size_t i = 0; i < script.summary.phases.size(); ++i) {
+    const std::string& phase = script.summary.phases[i];
+    if (std::ranges::find(known, phase) != known.end()) continue;
+    tell(i, "no run has a phase '" + phase + "'" + near_or_all(phase, known));
+  }
+}
+
+void check_together(const ScriptSpec& script, const TellFault& tell) {
+  const auto has_schedule = [](const TrialSpec& trial) { return trial.schedule.has_value(); };
+  if (!script.begin.empty() && !clock_from(script.begin)) {
+    tell("begin", "expected the date and time at which runs begin, e.g. 2026-03-02T07:00, got '" + script.begin + "'");
+  } else if (!script.begin.empty() && std::ranges::any_of(script.trials, has_schedule)) {
+    tell("begin", "a schedule's `first_day` and `from` say when its runs begin: leave out `begin`");
+  }
+  constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
+  if (script.replicates < 0 || script.trials.size() * static_cast<std::size_t>(script.replicates) <= most) return;
+  tell("replicates", "trials times replicates are more than " + std::to_string(most) + " runs");
+}
+
+void check(const ScriptSpec& script, Diagnostics& diagnostics) { ScriptCheck(script, diagnostics).run(); }
 
 std::string follow_fault(const std::vector<double>& times_s, const std::vector<Vec2>& points,
                          const std::vector<double>& headings_deg) {
@@ -447,24 +453,6 @@ void check(const OccupancySpec& occupancy, const std::string& begin, const SpecP
   check_together(occupancy, begin,
                  [&](std::string_view field, const std::string& message) { faults.error(path.field(field), message); });
 }
-
-namespace {
-
-void check(const MeetingsSpec& meetings, const SpecPath& path, SpecFaults& faults) {
-  faults.fields(meetings, path);
-  faults.together(meetings, path);
-  if (!faults.few(path.field("held"), meetings.held.size(), limits::held_meetings)) return;
-  for (std::size_t i = 0; i < meetings.held.size(); ++i) {
-    const SpecPath held = path.item("held", i);
-    faults.fields(meetings.held[i], held);
-    faults.together(meetings.held[i], held);
-  }
-  check_together(meetings.held, [&](std::size_t i, std::size_t j) {
-    faults.error(path.item("held", i), "overlaps held[" + std::to_string(j) + "], and there is one room");
-  });
-}
-
-}  // namespace
 
 void check_together(const HeldMeetingSpec& held, const TellFault& tell) {
   if (held.at_h + held.duration_min / 60.0 > 24.0) tell("duration_min", "the meeting lasts beyond midnight");

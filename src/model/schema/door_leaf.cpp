@@ -87,11 +87,6 @@ double DoorLeaf::distance_to_sweep_m(const Vec2& point) const noexcept {
   return std::max(0.0, to_edges_m - 0.5 * door_.thickness_m);
 }
 
-double DoorLeaf::distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept {
-  const Vec2 end = door_.width_m * Vec2(std::cos(angle(step)), std::sin(angle(step)));
-  return std::max(0.0, to_segment_m(from_hinge(point), end) - 0.5 * door_.thickness_m);
-}
-
 bool DoorLeaf::on_one_side(const Vec2& a, const Vec2& b) const noexcept {
   return (from_hinge(a).y < 0.0) == (from_hinge(b).y < 0.0);
 }

@@ -36,8 +36,6 @@ class DoorLeaf {
   [[nodiscard]] double reach_m() const noexcept { return 1.5 * door_.width_m + door_.thickness_m; }
   /// Between a point of the floor and what the leaf sweeps; 0 inside.
   [[nodiscard]] double distance_to_sweep_m(const Vec2& point) const noexcept;
-  /// The same to the leaf where it is now.
-  [[nodiscard]] double distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept;
   /// Both before the wall in which the door is, or both behind it.
   [[nodiscard]] bool on_one_side(const Vec2& a, const Vec2& b) const noexcept;
   /// Does the straight way from a to b lead through the opening?

@@ -54,10 +54,7 @@ TEST_CASE("a blind field takes as many of an analog sensor's rays away as it say
   double least_blind = 2.0, most_seeing = -2.0;
   for (std::size_t sensor = 0; sensor < after.n_sensors(); ++sensor) {
     const Quat from_world = glm::conjugate(scene.sensors[sensor].world_from_sensor.rotation);
-    const auto ray_of = [&](std::size_t s) {
-      return after.zone_rays_begin[after.cluster_zones_begin[after.sensor_clusters_begin[s]]];
-    };
-    for (std::size_t ray = ray_of(sensor); ray < ray_of(sensor + 1); ++ray) {
+    for (std::size_t ray = after.first_ray(sensor); ray < after.first_ray(sensor + 1); ++ray) {
       const bool is_blind = after.range[ray] < before.range[ray];
       if (scene.sensors[sensor].id != "PIR2") {
         REQUIRE_FALSE(is_blind);

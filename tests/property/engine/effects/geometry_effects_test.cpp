@@ -35,17 +35,13 @@ Vec2 place_of(const Model& model, const std::string& id) {
   return floor_point(std::ranges::find(model.compiled().scene().seats, id, &SeatSpec::id)->world_from_seat.origin);
 }
 
-std::size_t rays_of(const RayBundle& rays, std::size_t sensor) {
-  return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[sensor]]];
-}
-
 }  // namespace
 
 TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one sensor and no other") {
   const Model plain = meeting_room({}),
               yawed = meeting_room({bare_effect("sensor_yaw", {{"yaw_deg", 5.0}}, {{"sensor", "PIR2"}})});
-  const std::size_t begin = rays_of(plain.compiled().array().rated(), 1),
-                    end = rays_of(plain.compiled().array().rated(), 2);
+  const std::size_t begin = plain.compiled().array().rated().first_ray(1),
+                    end = plain.compiled().array().rated().first_ray(2);
   const double c = std::cos(radians(5.0)), s = std::sin(radians(5.0));
   for (std::size_t i = 0; i < plain.compiled().array().rated().rays.size(); ++i) {
     const Ray &before = plain.compiled().array().rated().rays[i], &after = yawed.compiled().array().rated().rays[i];

@@ -140,13 +140,10 @@ TEST_CASE("soft edges keep the hard zones as their first copies") {
   const Model hard = model_with({}), soft = model_with({bare_effect("soft_zone_edges", {{"sigma_deg", 0.5}})});
   const RayBundle &a = hard.compiled().array().rated(), &b = soft.compiled().array().rated();
   CHECK(b.n_zones() == 7 * a.n_zones());
-  const auto first_ray = [](const RayBundle& rays, std::size_t sensor) {
-    return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[sensor]]];
-  };
   for (std::size_t sensor = 0; sensor < a.n_sensors(); ++sensor) {
-    const std::size_t n = first_ray(a, sensor + 1) - first_ray(a, sensor);
+    const std::size_t n = a.first_ray(sensor + 1) - a.first_ray(sensor);
     for (std::size_t i = 0; i < n; ++i) {
-      REQUIRE(a.rays[first_ray(a, sensor) + i].direction == b.rays[first_ray(b, sensor) + i].direction);
+      REQUIRE(a.rays[a.first_ray(sensor) + i].direction == b.rays[b.first_ray(sensor) + i].direction);
     }
   }
 }

@@ -231,13 +231,10 @@ TEST_CASE("a blind field takes the stated share of one lens's rays, all on the s
   const Model plain = room_with({}),
               blind = room_with({effect("blind_field", {{"share", 0.3}, {"side_deg", 0.0}}, {{"sensor", "PIR2"}})});
   const RayBundle &before = plain.compiled().array().rated(), &after = blind.compiled().array().rated();
-  const auto first_of = [&](std::size_t sensor) {
-    return before.zone_rays_begin[before.cluster_zones_begin[before.sensor_clusters_begin[sensor]]];
-  };
   const SensorSpec& sensor = plain.scene().sensors[1];
   double n_blind = 0.0, leftmost_blind = 1e9, rightmost_seeing = -1e9;
   for (std::size_t i = 0; i < before.rays.size(); ++i) {
-    const bool of_lens = i >= first_of(1) && i < first_of(2);
+    const bool of_lens = i >= before.first_ray(1) && i < before.first_ray(2);
     if (after.range[i] == before.range[i]) {
       if (of_lens) {
         const Vec3 d = glm::conjugate(sensor.world_from_sensor.rotation) * Vec3(before.rays[i].direction);
@@ -250,7 +247,7 @@ TEST_CASE("a blind field takes the stated share of one lens's rays, all on the s
     leftmost_blind = std::min(leftmost_blind, d.x);
     n_blind += 1.0;
   }
-  CHECK(n_blind == std::round(0.3 * static_cast<double>(first_of(2) - first_of(1))));
+  CHECK(n_blind == std::round(0.3 * static_cast<double>(before.first_ray(2) - before.first_ray(1))));
   CHECK(leftmost_blind >= rightmost_seeing - 1e-12);
 }
 

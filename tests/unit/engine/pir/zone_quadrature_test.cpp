@@ -49,7 +49,7 @@ TEST_CASE("the weights of a zone's rays sum to its solid angle whatever their nu
       for (const ZoneSpec& zone : cluster.zones) {
         for (const int n : {1, 5, 34, 100}) {
           double sum = 0.0;
-          for (const WeightedDirection& ray : zone_quadrature(model, zone, n)) sum += ray.solid_angle_sr;
+          for (const WeightedDirection& ray : zone_quadrature(model, {&zone, 1}, n)) sum += ray.solid_angle_sr;
           CHECK(sum == Approx(solid_angle_sr(model, zone)).epsilon(1e-12));
         }
       }
@@ -62,7 +62,7 @@ TEST_CASE("the rays spread as far as a zone convolved with its blur does", "[pir
   for (const double blur_deg : {0.0, 0.3, 0.8}) {
     const AheadZone given = ahead(side_m, side_m, plane_m, blur_deg);
     double sum = 0.0, squares = 0.0, mean = 0.0;
-    for (const WeightedDirection& ray : zone_quadrature(given.model, given.zone, 5000)) {
+    for (const WeightedDirection& ray : zone_quadrature(given.model, {&given.zone, 1}, 5000)) {
       const double x = ray.direction.x / -ray.direction.z * plane_m;
       sum += ray.solid_angle_sr;
       mean += ray.solid_angle_sr * x;
@@ -78,7 +78,7 @@ TEST_CASE("a sharp zone's rays all lie inside it and cover half of it with half 
   const AheadZone given = ahead(0.3, 0.2, 5.0, 0.0);
   for (const int n : {34, 233}) {
     double left = 0.0, sum = 0.0;
-    for (const WeightedDirection& ray : zone_quadrature(given.model, given.zone, n)) {
+    for (const WeightedDirection& ray : zone_quadrature(given.model, {&given.zone, 1}, n)) {
       const Vec3 point = ray.direction * (5.0 / -ray.direction.z);
       CHECK(std::abs(point.x) <= 0.15);
       CHECK(std::abs(point.y) <= 0.10);
