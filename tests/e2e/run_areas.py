@@ -7,23 +7,8 @@ import collections
 import csv
 import io
 import json
-import pathlib
-import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
-
-
-def pirsim(*args, code=0):
-    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300)
-    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
-    return result
-
-
-def rows(text):
-    return list(csv.DictReader(io.StringIO(text)))
+from program import DATA, Case, main, pirsim, rows
 
 
 def without_areas(nodes, _):
@@ -32,11 +17,9 @@ def without_areas(nodes, _):
             del node["extras"]
 
 
-class Areas(unittest.TestCase):
+class Areas(Case):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+        super().setUp()
         self.scene = DATA / "rooms" / "two_rooms.gltf"
         self.study = "--script", DATA / "studies" / "two_rooms.yaml", "--sensors", DATA / "sensors"
 
@@ -193,5 +176,4 @@ exports: [energyplus, uci864]
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    main()

@@ -19,9 +19,10 @@ import subprocess
 import sys
 import tempfile
 import time
-import unittest
 
-PIRSIM = DATA = LIBRARY = None
+from program import DATA, PIRSIM, Case, made_folder, main
+
+LIBRARY = pathlib.Path(sys.argv[3]).resolve()
 
 
 def arguments(*args, replicates=4):
@@ -49,22 +50,17 @@ def scratch():
         yield pathlib.Path(folder)
 
 
-class Shards(unittest.TestCase):
+class Shards(Case):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
-        study("-o", cls.folder / "one.csv")
-        cls.bytes = (cls.folder / "one.csv").read_bytes()
-        cls.manifest = json.loads((cls.folder / "one.csv.json").read_text())
+        folder = made_folder(cls.addClassCleanup)
+        study("-o", folder / "one.csv")
+        cls.bytes = (folder / "one.csv").read_bytes()
+        cls.manifest = json.loads((folder / "one.csv.json").read_text())
         assert study(text=False).stdout == cls.bytes, "a file's rows are not those of standard output"
-        cls.shards = cls.folder / "shards"
+        cls.shards = folder / "shards"
         for i in range(1, 6):
             study("--shard", f"{i}/5", "-o", cls.shards, "--threads", 1 + i % 2)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
 
     @contextlib.contextmanager
     def copy(self):
@@ -87,36 +83,34 @@ class Shards(unittest.TestCase):
 
     def test_a_merged_summary_is_the_one_that_a_single_process_writes(self):
         script = DATA / "studies" / "studyA.yaml"
-        with scratch() as folder:
-            for ending in (".csv", ".md"):
-                study("--summary", folder / f"one{ending}")
-                call([PIRSIM, "merge", self.shards, "-o", folder / "all.csv.gz", "--summary", folder / f"all{ending}",
-                      "--script", script])
-                self.assertEqual((folder / f"all{ending}").read_text(), (folder / f"one{ending}").read_text())
-            before = names(folder)
-            merge = [PIRSIM, "merge", self.shards, "-o", folder / "b.csv", "--summary", folder / "b.md"]
-            self.assertIn("--script", call(merge, 2).stderr)
-            self.assertIn("isn't the script of these", call([*merge, "--script", DATA / "studies/office.yaml"], 3).stderr)
-            self.assertIn("isn't the script of these",
-                          call([*merge, "--script", script, "--set", "sensing.rays_per_zone=9"], 3).stderr)
-            self.assertIn("are one file", call([*merge[:-1], folder / "b.csv", "--script", script], 2).stderr)
-            self.assertEqual(names(folder), before)
+        for ending in (".csv", ".md"):
+            study("--summary", self.folder / f"one{ending}")
+            call([PIRSIM, "merge", self.shards, "-o", self.folder / "all.csv.gz", "--summary", self.folder / f"all{ending}",
+                  "--script", script])
+            self.assertEqual((self.folder / f"all{ending}").read_text(), (self.folder / f"one{ending}").read_text())
+        before = names(self.folder)
+        merge = [PIRSIM, "merge", self.shards, "-o", self.folder / "b.csv", "--summary", self.folder / "b.md"]
+        self.assertIn("--script", call(merge, 2).stderr)
+        self.assertIn("isn't the script of these", call([*merge, "--script", DATA / "studies/office.yaml"], 3).stderr)
+        self.assertIn("isn't the script of these",
+                      call([*merge, "--script", script, "--set", "sensing.rays_per_zone=9"], 3).stderr)
+        self.assertIn("are one file", call([*merge[:-1], self.folder / "b.csv", "--script", script], 2).stderr)
+        self.assertEqual(names(self.folder), before)
 
     def test_compressed_files_are_read_by_the_usual_tools(self):
-        with scratch() as folder:
-            for ending in ("gz", "zst"):
-                study("-o", folder / f"a.csv.{ending}")
-                study("-o", folder / f"b.csv.{ending}")
-                self.assertEqual((folder / f"a.csv.{ending}").read_bytes(), (folder / f"b.csv.{ending}").read_bytes())
-            self.assertEqual(gzip.decompress((folder / "a.csv.gz").read_bytes()), self.bytes)
-            if shutil.which("zstd"):
-                self.assertEqual(call(["zstd", "-dc", folder / "a.csv.zst"], text=False).stdout, self.bytes)
+        for ending in ("gz", "zst"):
+            study("-o", self.folder / f"a.csv.{ending}")
+            study("-o", self.folder / f"b.csv.{ending}")
+            self.assertEqual((self.folder / f"a.csv.{ending}").read_bytes(), (self.folder / f"b.csv.{ending}").read_bytes())
+        self.assertEqual(gzip.decompress((self.folder / "a.csv.gz").read_bytes()), self.bytes)
+        if shutil.which("zstd"):
+            self.assertEqual(call(["zstd", "-dc", self.folder / "a.csv.zst"], text=False).stdout, self.bytes)
 
     def test_the_manifest_names_every_input_with_its_hash(self):
         inputs = {entry["file"]: entry["sha256"] for entry in self.manifest["inputs"]}
         self.assertEqual(set(inputs), {"studyA.yaml", "meeting_room.gltf", "EKMC1604111.yaml"})
         for file in (DATA / "studies" / "studyA.yaml", DATA / "rooms" / "meeting_room.gltf",
-                     DATA / "sensors" / "EKMC1604111.yaml", self.folder / "one.csv"):
+                     DATA / "sensors" / "EKMC1604111.yaml", self.shards.parent / "one.csv"):
             told = inputs.get(file.name, self.manifest["sha256"])
             self.assertEqual(call(["sha256sum", file]).stdout.split()[0], told)
         self.assertEqual((self.manifest["runs"], self.manifest["rows"]), (40, self.bytes.count(b"\n") - 1))
@@ -201,23 +195,18 @@ class Shards(unittest.TestCase):
         self.assertIn("use --shard auto/5", fault)
 
 
-class Occupants(unittest.TestCase):
+class Occupants(Case):
     """Who is where is cut, stopped and joined as rows are."""
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        folder = pathlib.Path(cls.scratch.name)
+        folder = made_folder(cls.addClassCleanup)
         study("-o", "/dev/null", "--occupants", folder / "plain.csv")
         study("-o", folder / "rows.csv", "--occupants", folder / "who.csv")
         cls.rows, cls.bytes = ((folder / name).read_bytes() for name in ("rows.csv", "who.csv"))
         cls.manifest = json.loads((folder / "who.csv.json").read_text())
         assert (folder / "plain.csv").read_bytes() == cls.bytes, "a file that can be resumed holds other bytes"
         assert names(folder) == ["plain.csv", "rows.csv", "rows.csv.json", "who.csv", "who.csv.json"], names(folder)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
 
     def assert_whole(self, folder):
         self.assertEqual((folder / "rows.csv").read_bytes(), self.rows)
@@ -226,60 +215,57 @@ class Occupants(unittest.TestCase):
 
     def test_merged_shards_are_what_one_process_writes_with_the_same_manifest(self):
         self.assertEqual((self.manifest["table"], self.manifest["rows"]), ("occupants", self.bytes.count(b"\n") - 1))
-        with scratch() as folder:
-            for i in (2, 3, 1):
-                study("--shard", f"{i}/3", "-o", folder / "out", "--occupants", folder / "who", "--threads", i)
-            for name, expected in (("out", self.rows), ("who", self.bytes)):
-                self.assertEqual(call([PIRSIM, "merge", "--status", folder / name]).stdout, "")
-                call([PIRSIM, "merge", folder / name, "-o", folder / f"{name}.csv"])
-                self.assertEqual((folder / f"{name}.csv").read_bytes(), expected)
-            self.assertEqual(json.loads((folder / "who.csv.json").read_text()), self.manifest)
-            study("--shard", "2/3", "-o", folder / "out", "--resume")
-            shutil.copytree(folder / "out", folder / "mixed")
-            for path in (folder / "who").glob("shard-0002*"):
-                shutil.copy(path, folder / "mixed")
-            self.assertIn("columns are not those", call([PIRSIM, "merge", folder / "mixed", "-o", folder / "m.csv"], 3).stderr)
+        for i in (2, 3, 1):
+            study("--shard", f"{i}/3", "-o", self.folder / "out", "--occupants", self.folder / "who", "--threads", i)
+        for name, expected in (("out", self.rows), ("who", self.bytes)):
+            self.assertEqual(call([PIRSIM, "merge", "--status", self.folder / name]).stdout, "")
+            call([PIRSIM, "merge", self.folder / name, "-o", self.folder / f"{name}.csv"])
+            self.assertEqual((self.folder / f"{name}.csv").read_bytes(), expected)
+        self.assertEqual(json.loads((self.folder / "who.csv.json").read_text()), self.manifest)
+        study("--shard", "2/3", "-o", self.folder / "out", "--resume")
+        shutil.copytree(self.folder / "out", self.folder / "mixed")
+        for path in (self.folder / "who").glob("shard-0002*"):
+            shutil.copy(path, self.folder / "mixed")
+        merge = [PIRSIM, "merge", self.folder / "mixed", "-o", self.folder / "m.csv"]
+        self.assertIn("columns are not those", call(merge, 3).stderr)
 
     def test_both_tables_are_resumed_however_far_each_got(self):
         files = ("-o", "rows.csv", "--occupants", "who.csv", "--resume")
-        with scratch() as folder:
-            for _ in range(2):
-                study(*files, "--max-time", "0.001s", "--threads", 1, code=75, cwd=folder)
-            self.assertEqual(names(folder), [f"{table}.csv.{part}" for table in ("rows", "who")
-                                             for part in ("journal", "partial")])
-            journal = folder / "who.csv.journal"  # as if the process had been killed between the two
-            journal.write_text("".join(journal.read_text().splitlines(keepends=True)[:-1]))
-            study(*files, cwd=folder)
-            self.assert_whole(folder)
-            for path in folder.glob("who.csv*"):
-                path.unlink()
-            study(*files, cwd=folder)  # all rows are there
-            self.assert_whole(folder)
+        for _ in range(2):
+            study(*files, "--max-time", "0.001s", "--threads", 1, code=75, cwd=self.folder)
+        self.assertEqual(names(self.folder), [f"{table}.csv.{part}" for table in ("rows", "who")
+                                         for part in ("journal", "partial")])
+        journal = self.folder / "who.csv.journal"  # as if the process had been killed between the two
+        journal.write_text("".join(journal.read_text().splitlines(keepends=True)[:-1]))
+        study(*files, cwd=self.folder)
+        self.assert_whole(self.folder)
+        for path in self.folder.glob("who.csv*"):
+            path.unlink()
+        study(*files, cwd=self.folder)  # all rows are there
+        self.assert_whole(self.folder)
 
     def test_one_table_is_not_taken_for_the_other(self):
-        with scratch() as folder:
-            study("-o", "rows.csv", "--occupants", "who.csv", cwd=folder)
-            told = study("-o", "who.csv", "--occupants", "rows.csv", "--resume", code=3, cwd=folder).stderr
-            self.assertIn("table (occupants, not rows)", told)
-            self.assert_whole(folder)
-            for args, message in ((("-o", "a", "--occupants", "a"), "are one folder"),
-                                  (("-o", "a", "--occupants", "w.csv"), "--occupants 'w.csv' is named as a file")):
-                self.assertIn(message, study("--shard", "1/2", *args, code=2, cwd=folder).stderr)
-            self.assertIn("not a regular file", study("-o", "a.csv", "--occupants", "/dev/null", "--resume", code=2,
-                                                      cwd=folder).stderr)
-            self.assert_whole(folder)
+        study("-o", "rows.csv", "--occupants", "who.csv", cwd=self.folder)
+        told = study("-o", "who.csv", "--occupants", "rows.csv", "--resume", code=3, cwd=self.folder).stderr
+        self.assertIn("table (occupants, not rows)", told)
+        self.assert_whole(self.folder)
+        for args, message in ((("-o", "a", "--occupants", "a"), "are one folder"),
+                              (("-o", "a", "--occupants", "w.csv"), "--occupants 'w.csv' is named as a file")):
+            self.assertIn(message, study("--shard", "1/2", *args, code=2, cwd=self.folder).stderr)
+        self.assertIn("not a regular file", study("-o", "a.csv", "--occupants", "/dev/null", "--resume", code=2,
+                                                  cwd=self.folder).stderr)
+        self.assert_whole(self.folder)
 
     def test_nothing_is_left_where_rows_can_not_be_resumed(self):
-        with scratch() as folder:
-            process = subprocess.Popen(arguments("--occupants", folder / "who.csv", replicates=1000),
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-            time.sleep(1.0)
-            process.send_signal(signal.SIGINT)
-            self.assertIn("stopped by SIGINT", process.communicate(timeout=60)[1])
-            self.assertEqual((process.returncode, names(folder)), (75, []))
+        process = subprocess.Popen(arguments("--occupants", self.folder / "who.csv", replicates=1000),
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("stopped by SIGINT", process.communicate(timeout=60)[1])
+        self.assertEqual((process.returncode, names(self.folder)), (75, []))
 
 
-class Stopping(unittest.TestCase):
+class Stopping(Case):
     REPLICATES = 40
 
     @classmethod
@@ -319,17 +305,16 @@ class Stopping(unittest.TestCase):
                 self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
 
     def test_max_time_stops_with_progress_and_is_resumable(self):
-        with scratch() as folder:
-            for _ in range(3):
-                result = study("-o", folder / "rows.csv", "--resume", "--max-time", "0.001s", code=75,
-                               replicates=self.REPLICATES)
-                self.assertIn("stopped by --max-time", result.stderr)
-            self.assertGreaterEqual(len((folder / "rows.csv.journal").read_text().splitlines()), 1 + 1 + 3)
-            study("-o", folder / "rows.csv", "--resume", "--max-time", "1h", replicates=self.REPLICATES)
-            self.assertEqual((folder / "rows.csv").read_bytes(), self.bytes)
-            before = (folder / "rows.csv").stat().st_mtime_ns
-            study("-o", folder / "rows.csv", "--resume", replicates=self.REPLICATES)
-            self.assertEqual((folder / "rows.csv").stat().st_mtime_ns, before)
+        for _ in range(3):
+            result = study("-o", self.folder / "rows.csv", "--resume", "--max-time", "0.001s", code=75,
+                           replicates=self.REPLICATES)
+            self.assertIn("stopped by --max-time", result.stderr)
+        self.assertGreaterEqual(len((self.folder / "rows.csv.journal").read_text().splitlines()), 1 + 1 + 3)
+        study("-o", self.folder / "rows.csv", "--resume", "--max-time", "1h", replicates=self.REPLICATES)
+        self.assertEqual((self.folder / "rows.csv").read_bytes(), self.bytes)
+        before = (self.folder / "rows.csv").stat().st_mtime_ns
+        study("-o", self.folder / "rows.csv", "--resume", replicates=self.REPLICATES)
+        self.assertEqual((self.folder / "rows.csv").stat().st_mtime_ns, before)
 
     def stopped(self, folder):
         """Rows that --max-time stopped after a few runs, and their journal."""
@@ -347,150 +332,143 @@ class Stopping(unittest.TestCase):
 
     def test_no_altered_bit_of_a_journal_loses_or_doubles_a_run(self):
         reference = study(text=False).stdout
-        with scratch() as folder:
-            rows, journal = self.stopped(folder)
-            whole, partial = journal.read_text(), rows.with_name("rows.csv.partial").read_bytes()
-            *before, last = whole.splitlines(keepends=True)
-            next_run = int(last.split()[0])
-            self.assertGreater(next_run, 0)
-            for changed in (last.replace(f"{next_run} ", f"{next_run + 1} ", 1),
-                            last.replace(f"{next_run} ", f"{next_run - 1} ", 1),
-                            last.replace(f"{next_run} ", "999999 ", 1),
-                            last.replace(f"{next_run} ", "-1 ", 1), last[:-2] + "x\n", ""):
-                with self.subTest(changed):
-                    journal.write_text("".join(before) + changed)
-                    rows.with_name("rows.csv.partial").write_bytes(partial)
-                    study("-o", rows, "--resume")
-                    self.assertEqual(rows.read_bytes(), reference)
-                    self.assertEqual(json.loads((folder / "rows.csv.json").read_text())["rows"],
-                                     reference.count(b"\n") - 1)
-                    for path in folder.iterdir():
-                        path.unlink()
+        rows, journal = self.stopped(self.folder)
+        whole, partial = journal.read_text(), rows.with_name("rows.csv.partial").read_bytes()
+        *before, last = whole.splitlines(keepends=True)
+        next_run = int(last.split()[0])
+        self.assertGreater(next_run, 0)
+        for changed in (last.replace(f"{next_run} ", f"{next_run + 1} ", 1),
+                        last.replace(f"{next_run} ", f"{next_run - 1} ", 1),
+                        last.replace(f"{next_run} ", "999999 ", 1),
+                        last.replace(f"{next_run} ", "-1 ", 1), last[:-2] + "x\n", ""):
+            with self.subTest(changed):
+                journal.write_text("".join(before) + changed)
+                rows.with_name("rows.csv.partial").write_bytes(partial)
+                study("-o", rows, "--resume")
+                self.assertEqual(rows.read_bytes(), reference)
+                self.assertEqual(json.loads((self.folder / "rows.csv.json").read_text())["rows"],
+                                 reference.count(b"\n") - 1)
+                for path in self.folder.iterdir():
+                    path.unlink()
 
     def test_a_journal_that_names_what_the_study_does_not_have_is_refused(self):
-        with scratch() as folder:
-            rows, journal = self.stopped(folder)
-            texts = [line.rsplit(" #", 1)[0] for line in journal.read_text().splitlines()]
-            made, *marks = texts
-            last = marks[-1].split()
-            self.assertEqual(self.sealed(texts), journal.read_text())
-            other_runs = made.replace('"runs":40', '"runs":39')
-            self.assertNotEqual(other_runs, made)
-            cases = {
-                "names run 999999": [made, *marks, " ".join(["999999", *last[1:]])],
-                "isn't what a journal says of a run": [made, *marks, " ".join(["-1", *last[1:]])],
-                f"where run {int(last[0]) + 1} of 0 to 40 would follow": [*texts, marks[-1]],  # doubled
-                "runs (0 to 39, not 0 to 40)": [other_runs, *marks],
-                "runs that the study doesn't have": [made.replace('"runs":40', '"runs":41'), *marks],
-                "is no manifest of pirsim": [made.replace('"runs":40', '"runs":-1'), *marks],
-                "shard (2/5, not none)": [made.replace('"first_run"', '"shard":{"index":2,"count":5},"first_run"'), *marks],
-            }
-            for message, lines in cases.items():
-                with self.subTest(message):
-                    journal.write_text(self.sealed(lines))
-                    before = {path.name: path.read_bytes() for path in folder.iterdir()}
-                    told = study("-o", rows, "--resume", code=3).stderr
-                    self.assertIn(message, told)
-                    self.assertIn("rows.csv.journal", told)
-                    self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
-            study("-o", rows)  # as the message says
-            self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
+        rows, journal = self.stopped(self.folder)
+        texts = [line.rsplit(" #", 1)[0] for line in journal.read_text().splitlines()]
+        made, *marks = texts
+        last = marks[-1].split()
+        self.assertEqual(self.sealed(texts), journal.read_text())
+        other_runs = made.replace('"runs":40', '"runs":39')
+        self.assertNotEqual(other_runs, made)
+        cases = {
+            "names run 999999": [made, *marks, " ".join(["999999", *last[1:]])],
+            "isn't what a journal says of a run": [made, *marks, " ".join(["-1", *last[1:]])],
+            f"where run {int(last[0]) + 1} of 0 to 40 would follow": [*texts, marks[-1]],  # doubled
+            "runs (0 to 39, not 0 to 40)": [other_runs, *marks],
+            "runs that the study doesn't have": [made.replace('"runs":40', '"runs":41'), *marks],
+            "is no manifest of pirsim": [made.replace('"runs":40', '"runs":-1'), *marks],
+            "shard (2/5, not none)": [made.replace('"first_run"', '"shard":{"index":2,"count":5},"first_run"'), *marks],
+        }
+        for message, lines in cases.items():
+            with self.subTest(message):
+                journal.write_text(self.sealed(lines))
+                before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+                told = study("-o", rows, "--resume", code=3).stderr
+                self.assertIn(message, told)
+                self.assertIn("rows.csv.journal", told)
+                self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, before)
+        study("-o", rows)  # as the message says
+        self.assertEqual(names(self.folder), ["rows.csv", "rows.csv.json"])
 
     def test_a_finished_file_whose_manifest_counts_other_rows_is_made_anew(self):
-        with scratch() as folder:
-            study("-o", folder / "rows.csv")
-            manifest, bytes_before = folder / "rows.csv.json", (folder / "rows.csv").read_bytes()
-            text = manifest.read_text()
-            n_rows = json.loads(text)["rows"]
-            manifest.write_text(text.replace(f'"rows": {n_rows}', f'"rows": {n_rows + 1}'))
-            study("-o", folder / "rows.csv", "--resume")
-            self.assertEqual(manifest.read_text(), text)
-            self.assertEqual((folder / "rows.csv").read_bytes(), bytes_before)
+        study("-o", self.folder / "rows.csv")
+        manifest, bytes_before = self.folder / "rows.csv.json", (self.folder / "rows.csv").read_bytes()
+        text = manifest.read_text()
+        n_rows = json.loads(text)["rows"]
+        manifest.write_text(text.replace(f'"rows": {n_rows}', f'"rows": {n_rows + 1}'))
+        study("-o", self.folder / "rows.csv", "--resume")
+        self.assertEqual(manifest.read_text(), text)
+        self.assertEqual((self.folder / "rows.csv").read_bytes(), bytes_before)
 
     def test_a_signal_leaves_no_partial_file_of_what_cannot_be_resumed(self):
-        with scratch() as folder:
-            process = subprocess.Popen(
-                arguments("--zones", folder / "z.csv", "--summary", folder / "s.md", replicates=self.REPLICATES),
-                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            until = time.monotonic() + 60
-            while not list(folder.glob("z.csv.writing-*")) and time.monotonic() < until:
-                time.sleep(0.002)
-            time.sleep(0.05)
-            process.terminate()
-            process.communicate(timeout=120)
-            self.assertEqual(process.returncode, 75)
-            self.assertEqual(names(folder), [])
+        process = subprocess.Popen(
+            arguments("--zones", self.folder / "z.csv", "--summary", self.folder / "s.md", replicates=self.REPLICATES),
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        until = time.monotonic() + 60
+        while not list(self.folder.glob("z.csv.writing-*")) and time.monotonic() < until:
+            time.sleep(0.002)
+        time.sleep(0.05)
+        process.terminate()
+        process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 75)
+        self.assertEqual(names(self.folder), [])
 
     def test_killed_at_random_moments_and_resumed_the_bytes_are_right(self):
         kills, wanted, moments = 0, int(os.environ.get("PIRSIM_KILLS", 6)), random.Random(1)
-        with scratch() as folder:
-            while kills < wanted:
-                for ending in (".csv", ".csv.zst"):
-                    file = folder / ("rows" + ending)
-                    while not file.with_name(file.name + ".json").exists() and kills < wanted:
-                        code = self.interrupted(file, signal.SIGKILL, moments.uniform(0.0, 0.6 * self.seconds))
-                        kills += code == -signal.SIGKILL
-                    study("-o", file, "--resume", replicates=self.REPLICATES)
-                    study("-o", folder / "plain.csv", replicates=self.REPLICATES) if not kills else None
-                    text = call(["zstd", "-dc", file], text=False).stdout if ending == ".csv.zst" and shutil.which(
-                        "zstd") else file.read_bytes() if ending == ".csv" else None
-                    if text is not None:
-                        self.assertEqual(text, self.bytes)
-                    manifest = json.loads(file.with_name(file.name + ".json").read_text())
-                    self.assertEqual(manifest["bytes"], len(self.bytes))
-                    for path in folder.iterdir():
-                        path.unlink()
+        while kills < wanted:
+            for ending in (".csv", ".csv.zst"):
+                file = self.folder / ("rows" + ending)
+                while not file.with_name(file.name + ".json").exists() and kills < wanted:
+                    code = self.interrupted(file, signal.SIGKILL, moments.uniform(0.0, 0.6 * self.seconds))
+                    kills += code == -signal.SIGKILL
+                study("-o", file, "--resume", replicates=self.REPLICATES)
+                study("-o", self.folder / "plain.csv", replicates=self.REPLICATES) if not kills else None
+                text = call(["zstd", "-dc", file], text=False).stdout if ending == ".csv.zst" and shutil.which(
+                    "zstd") else file.read_bytes() if ending == ".csv" else None
+                if text is not None:
+                    self.assertEqual(text, self.bytes)
+                manifest = json.loads(file.with_name(file.name + ".json").read_text())
+                self.assertEqual(manifest["bytes"], len(self.bytes))
+                for path in self.folder.iterdir():
+                    path.unlink()
         print(f"killed {kills} times", file=sys.stderr)
 
 
-class Links(unittest.TestCase):
+class Links(Case):
     """Whoever may write into the folder must not make pirsim write elsewhere."""
 
     def test_no_file_at_work_follows_a_link(self):
-        with scratch() as folder:
-            mine = folder / "mine.txt"
-            mine.write_text("mine")
-            out = folder / "out"
-            out.mkdir()
-            for name in ("rows.csv.writing", "rows.csv.json.writing", "s.md.writing", "r.html.writing"):
-                (out / name).symlink_to(mine)
-            study("-o", out / "rows.csv", "--summary", out / "s.md", "--report", out / "r.html", replicates=1)
-            self.assertEqual(mine.read_text(), "mine")
-            for name in ("b.csv.partial", "b.csv.journal"):
-                for link in (lambda: (out / name).symlink_to(mine), lambda: (out / name).hardlink_to(mine)):
-                    link()
-                    for more in ((), ("--resume",)):
-                        told = study("-o", out / "b.csv", *more, code=4, replicates=1).stderr
-                        self.assertIn(f"{name}: error: can't be written: it ", told)
-                        self.assertIn("link", told)
-                    self.assertEqual(mine.read_text(), "mine")
-                    (out / name).unlink()
-            self.assertEqual([name for name in names(out) if "b.csv" in name], [])
+        mine = self.folder / "mine.txt"
+        mine.write_text("mine")
+        out = self.folder / "out"
+        out.mkdir()
+        for name in ("rows.csv.writing", "rows.csv.json.writing", "s.md.writing", "r.html.writing"):
+            (out / name).symlink_to(mine)
+        study("-o", out / "rows.csv", "--summary", out / "s.md", "--report", out / "r.html", replicates=1)
+        self.assertEqual(mine.read_text(), "mine")
+        for name in ("b.csv.partial", "b.csv.journal"):
+            for link in (lambda: (out / name).symlink_to(mine), lambda: (out / name).hardlink_to(mine)):
+                link()
+                for more in ((), ("--resume",)):
+                    told = study("-o", out / "b.csv", *more, code=4, replicates=1).stderr
+                    self.assertIn(f"{name}: error: can't be written: it ", told)
+                    self.assertIn("link", told)
+                self.assertEqual(mine.read_text(), "mine")
+                (out / name).unlink()
+        self.assertEqual([name for name in names(out) if "b.csv" in name], [])
 
     def test_two_processes_that_write_one_file_do_not_meet(self):
-        with scratch() as folder:
-            both = [subprocess.Popen(arguments("--summary", folder / "s.md", replicates=1), stdout=subprocess.DEVNULL)
-                    for _ in range(2)]
-            self.assertEqual([process.wait(timeout=120) for process in both], [0, 0])
-            self.assertEqual(names(folder), ["s.md"])
+        both = [subprocess.Popen(arguments("--summary", self.folder / "s.md", replicates=1), stdout=subprocess.DEVNULL)
+                for _ in range(2)]
+        self.assertEqual([process.wait(timeout=120) for process in both], [0, 0])
+        self.assertEqual(names(self.folder), ["s.md"])
 
 
-class Refusals(unittest.TestCase):
+class Refusals(Case):
     def test_what_is_refused_leaves_nothing_behind(self):
-        with scratch() as folder:
-            missing = folder / "none"
-            for args, code, told in (
-                    (("--trace", folder / "t.csv"), 2, "--trace: no sensor has an analog response"),
-                    (("--trace", folder / "t.csv", "--zones", folder / "z.csv", "--summary", folder / "s.md"), 2, "--trace"),
-                    (("--summary", missing / "s.md"), 4, "no folder"), (("--zones", missing / "z.csv"), 4, "no folder"),
-                    (("--report", missing / "r.html"), 4, "no folder"),
-                    (("--occupants", missing / "o.csv"), 4, "no folder")):
-                with self.subTest(args):
-                    self.assertIn(told, study("-o", folder / "rows.csv", *args, code=code, replicates=1).stderr)
-                    self.assertEqual(names(folder), [])
+        missing = self.folder / "none"
+        for args, code, told in (
+                (("--trace", self.folder / "t.csv"), 2, "--trace: no sensor has an analog response"),
+                (("--trace", self.folder / "t.csv", "--zones", self.folder / "z.csv", "--summary", self.folder / "s.md"), 2,
+                 "--trace"),
+                (("--summary", missing / "s.md"), 4, "no folder"), (("--zones", missing / "z.csv"), 4, "no folder"),
+                (("--report", missing / "r.html"), 4, "no folder"),
+                (("--occupants", missing / "o.csv"), 4, "no folder")):
+            with self.subTest(args):
+                self.assertIn(told, study("-o", self.folder / "rows.csv", *args, code=code, replicates=1).stderr)
+                self.assertEqual(names(self.folder), [])
 
 
-class FailingCalls(unittest.TestCase):
+class FailingCalls(Case):
     """Every call in turn, until none is left that could fail."""
 
     @staticmethod
@@ -567,14 +545,13 @@ class FailingCalls(unittest.TestCase):
     def test_memory_that_is_short_ends_with_a_message(self):
         if "PIRSIM_SANITIZED" in os.environ:
             self.skipTest("the sanitizers need much address space")
-        with scratch() as folder:
-            big = folder / "big.gltf"
-            big.write_text('{"asset":{"version":"2.0"},"nodes":[' + "{}," * 2_000_000 + "{}]}")
-            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (600_000_000, 600_000_000))
-            result = subprocess.run([str(PIRSIM), "--scene", str(big), "--script", str(DATA / "studies/studyA.yaml")],
-                                    capture_output=True, text=True, preexec_fn=limit, timeout=120)
-            self.assertIn(result.returncode, (3, 70), result.stderr)
-            self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        big = self.folder / "big.gltf"
+        big.write_text('{"asset":{"version":"2.0"},"nodes":[' + "{}," * 2_000_000 + "{}]}")
+        limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (600_000_000, 600_000_000))
+        result = subprocess.run([str(PIRSIM), "--scene", str(big), "--script", str(DATA / "studies/studyA.yaml")],
+                                capture_output=True, text=True, preexec_fn=limit, timeout=120)
+        self.assertIn(result.returncode, (3, 70), result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
 
     def test_a_closed_pipe_ends_quietly_on_standard_output_and_is_told_of_a_named_one(self):
         process = subprocess.Popen(arguments(replicates=20), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -583,18 +560,17 @@ class FailingCalls(unittest.TestCase):
         self.assertEqual(process.stderr.read(), b"")
         process.stderr.close()
         self.assertEqual(process.wait(timeout=120), -signal.SIGPIPE)
-        with scratch() as folder:
-            pipe = folder / "pipe"
-            os.mkfifo(pipe)
-            process = subprocess.Popen(arguments("-o", pipe, "--summary", folder / "s.md", replicates=20),
-                                       stderr=subprocess.PIPE, text=True)
-            with open(pipe, "rb") as reader:
-                reader.readline()
-            _, told = process.communicate(timeout=120)
-            self.assertEqual(process.returncode, 4)
-            self.assertIn("Broken pipe", told)
-            self.assertEqual(len(told.strip().splitlines()), 1)
-            self.assertEqual(names(folder), ["pipe"])
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        process = subprocess.Popen(arguments("-o", pipe, "--summary", self.folder / "s.md", replicates=20),
+                                   stderr=subprocess.PIPE, text=True)
+        with open(pipe, "rb") as reader:
+            reader.readline()
+        _, told = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 4)
+        self.assertIn("Broken pipe", told)
+        self.assertEqual(len(told.strip().splitlines()), 1)
+        self.assertEqual(names(self.folder), ["pipe"])
 
     def test_full_devices_are_told(self):
         for args in (("-o", "/dev/full"), ("--zones", "/dev/full")):
@@ -605,7 +581,7 @@ class FailingCalls(unittest.TestCase):
         self.assertIn("standard output can't be written", result.stderr)
 
 
-class PlainMachine(unittest.TestCase):
+class PlainMachine(Case):
     """tools/run_shards, for real."""
 
     def test_shards_of_which_one_dies_are_gone_on_with_and_merged(self):
@@ -631,25 +607,23 @@ exec {PIRSIM} "$@"
             self.assertEqual((folder / "out/all.csv").read_bytes(), (folder / "one.csv").read_bytes())
 
     def test_the_users_own_words_are_left_alone(self):
-        with scratch() as folder:
-            script = folder / "a {} b" / "study {}.yaml"
-            script.parent.mkdir()
-            shutil.copy(DATA / "studies/studyA.yaml", script)
-            call([DATA.parent / "tools" / "run_shards", "-n", 2, "-j", 2, "-o", folder / "out {}", "-p", PIRSIM, "--",
-                  "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--replicates", 1])
-            self.assertIn("all.csv", names(folder / "out {}"))
+        script = self.folder / "a {} b" / "study {}.yaml"
+        script.parent.mkdir()
+        shutil.copy(DATA / "studies/studyA.yaml", script)
+        call([DATA.parent / "tools" / "run_shards", "-n", 2, "-j", 2, "-o", self.folder / "out {}", "-p", PIRSIM, "--",
+              "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--replicates", 1])
+        self.assertIn("all.csv", names(self.folder / "out {}"))
 
     def test_no_shard_is_begun_after_one_that_was_refused(self):
-        with scratch() as folder:
-            script = folder / "study.yaml"
-            script.write_text("pirsim_script: 1\npeopel: []\n")
-            scene = DATA / "rooms/meeting_room.gltf"
-            for code, files in ((3, ("--scene", scene, "--script", script)), (2, ("--scene", scene, "--scirpt", script)),
-                                (4, ("--scene", scene, "--script", folder / "missing.yaml"))):
-                told = call([DATA.parent / "tools" / "run_shards", "-n", 50, "-j", 1, "-o", folder / "out", "-p", PIRSIM,
-                             "--", *files], code).stderr
-                self.assertEqual(told.count("error:"), 1, told)
-                self.assertIn("tools/run_shards: shard 1 was refused", told)
+        script = self.folder / "study.yaml"
+        script.write_text("pirsim_script: 1\npeopel: []\n")
+        scene = DATA / "rooms/meeting_room.gltf"
+        for code, files in ((3, ("--scene", scene, "--script", script)), (2, ("--scene", scene, "--scirpt", script)),
+                            (4, ("--scene", scene, "--script", self.folder / "missing.yaml"))):
+            told = call([DATA.parent / "tools" / "run_shards", "-n", 50, "-j", 1, "-o", self.folder / "out", "-p", PIRSIM,
+                         "--", *files], code).stderr
+            self.assertEqual(told.count("error:"), 1, told)
+            self.assertIn("tools/run_shards: shard 1 was refused", told)
 
     def test_what_is_missing_is_told(self):
         tool = DATA.parent / "tools" / "run_shards"
@@ -658,7 +632,7 @@ exec {PIRSIM} "$@"
             self.assertIn(message, call([tool, *words], 2).stderr)
 
 
-class LongEnds(unittest.TestCase):
+class LongEnds(Case):
     """Phases after the last run obey signals too."""
 
     def test_a_signal_while_rows_are_compressed_stops_and_loses_nothing(self):
@@ -686,7 +660,7 @@ people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s
             self.assertEqual(n_lines, 1 + json.loads((folder / "rows.csv.gz.json").read_text())["rows"])
 
 
-class Memory(unittest.TestCase):
+class Memory(Case):
     def peak_mb(self, command):
         process = subprocess.Popen(list(map(str, command)), stderr=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
@@ -729,37 +703,35 @@ people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s
             self.assertLess(peaks[1], peaks[0] + 2)
 
 
-class Options(unittest.TestCase):
+class Options(Case):
     def test_wrong_names_of_outputs_are_usage_errors_before_any_work(self):
-        with scratch() as folder:
-            for args, message in (
-                    (("--summary", folder / "t.txt"), "must end in .csv or .md"),
-                    (("-o", folder / "rows.txt"), "must end in .csv, .csv.gz or .csv.zst"),
-                    (("-o", folder / "rows"), "must end in"),
-                    (("--report", folder / "r.htm"), "must end in .html"),
-                    (("--zones", folder / "z"), "must end in"),
-                    (("-o", folder / "a.csv", "--summary", folder / "." / "a.csv"), "-o and --summary are one file"),
-                    (("--zones", folder / "a.csv", "--summary", folder / "a.csv"), "--summary and --zones are one file"),
-                    (("-o", folder / "a.csv", "--summary", folder / "a.csv.json"), "must end in .csv or .md"),
-                    (("--shard", "1/2"), "--shard needs -o DIR"),
-                    (("--resume",), "--resume needs -o FILE"),
-                    (("--max-time", "5m"), "--max-time needs -o FILE"),
-                    (("--max-time", "5x", "-o", folder / "a.csv"), "--max-time"),
-                    (("--resume", "-o", "/dev/null"), "not a regular file"),
-                    (("--resume", "-o", folder / "a.csv", "--summary", folder / "s.md"), "need all runs at once"),
-                    (("--shard", "1/2", "-o", folder, "--format", ".txt"), "--format"),
-                    (("--shard", "auto", "-o", folder), "none of these variables is set")):
-                with self.subTest(args):
-                    environment = {k: v for k, v in os.environ.items() if not k.startswith(("SLURM", "SGE", "PBS"))}
-                    self.assertIn(message, study(*args, code=2, env=environment).stderr)
-            self.assertEqual(names(folder), [])
+        for args, message in (
+                (("--summary", self.folder / "t.txt"), "must end in .csv or .md"),
+                (("-o", self.folder / "rows.txt"), "must end in .csv, .csv.gz or .csv.zst"),
+                (("-o", self.folder / "rows"), "must end in"),
+                (("--report", self.folder / "r.htm"), "must end in .html"),
+                (("--zones", self.folder / "z"), "must end in"),
+                (("-o", self.folder / "a.csv", "--summary", self.folder / "." / "a.csv"), "-o and --summary are one file"),
+                (("--zones", self.folder / "a.csv", "--summary", self.folder / "a.csv"), "--summary and --zones are one file"),
+                (("-o", self.folder / "a.csv", "--summary", self.folder / "a.csv.json"), "must end in .csv or .md"),
+                (("--shard", "1/2"), "--shard needs -o DIR"),
+                (("--resume",), "--resume needs -o FILE"),
+                (("--max-time", "5m"), "--max-time needs -o FILE"),
+                (("--max-time", "5x", "-o", self.folder / "a.csv"), "--max-time"),
+                (("--resume", "-o", "/dev/null"), "not a regular file"),
+                (("--resume", "-o", self.folder / "a.csv", "--summary", self.folder / "s.md"), "need all runs at once"),
+                (("--shard", "1/2", "-o", self.folder, "--format", ".txt"), "--format"),
+                (("--shard", "auto", "-o", self.folder), "none of these variables is set")):
+            with self.subTest(args):
+                environment = {k: v for k, v in os.environ.items() if not k.startswith(("SLURM", "SGE", "PBS"))}
+                self.assertIn(message, study(*args, code=2, env=environment).stderr)
+        self.assertEqual(names(self.folder), [])
 
     def test_an_output_that_is_an_input_is_refused(self):
-        with scratch() as folder:
-            script = shutil.copy(DATA / "studies" / "studyA.yaml", folder / "study.csv")
-            result = call([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", script], 2)
-            self.assertIn("--script and -o are one file", result.stderr)
-            self.assertEqual((folder / "study.csv").read_bytes(), (DATA / "studies" / "studyA.yaml").read_bytes())
+        script = shutil.copy(DATA / "studies" / "studyA.yaml", self.folder / "study.csv")
+        result = call([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", script], 2)
+        self.assertIn("--script and -o are one file", result.stderr)
+        self.assertEqual((self.folder / "study.csv").read_bytes(), (DATA / "studies" / "studyA.yaml").read_bytes())
 
     def test_a_camera_with_two_numbers_does_not_swallow_the_next_option(self):
         files = ("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml")
@@ -768,11 +740,9 @@ class Options(unittest.TestCase):
             self.assertIn("--camera", result.stderr)
 
     def test_a_summary_as_a_document_has_a_title(self):
-        with scratch() as folder:
-            study("--summary", folder / "s.md", replicates=1)
-            self.assertTrue((folder / "s.md").read_text().startswith("# Study A"), (folder / "s.md").read_text()[:60])
+        study("--summary", self.folder / "s.md", replicates=1)
+        self.assertEqual((self.folder / "s.md").read_text()[:9], "# Study A")
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA, LIBRARY = (pathlib.Path(sys.argv.pop(1)).resolve() for _ in range(3))
-    unittest.main(verbosity=2)
+    main(first=4)

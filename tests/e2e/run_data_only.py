@@ -7,11 +7,10 @@ import csv
 import json
 import pathlib
 import subprocess
-import sys
 import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import PIRSIM, Case, main
+
 SCRIPT = """pirsim_script: 1
 name: Two seats
 seed: SEED
@@ -67,7 +66,7 @@ def files_below(folder):
     return sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
 
 
-class DataOnly(unittest.TestCase):
+class DataOnly(Case):
     def test_an_analysis_knows_the_data_only(self):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
@@ -101,5 +100,4 @@ class DataOnly(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = (pathlib.Path(sys.argv.pop(1)).resolve() for _ in range(2))
-    unittest.main(verbosity=2)
+    main()

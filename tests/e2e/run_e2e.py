@@ -3,38 +3,18 @@
 
 Usage: run_e2e.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
-import csv
-import io
 import json
 import pathlib
 import re
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, made_folder, main, pirsim, rows, run
+
 HERE = pathlib.Path(__file__).resolve().parent
-
-
-def pirsim(*args, code=0, **kwargs):
-    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300, **kwargs)
-    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
-    return result
 
 
 def study(*args, scene="meeting_room.gltf", script="studyA.yaml", **kwargs):
     return pirsim("--scene", DATA / "rooms" / scene, "--script", DATA / "studies" / script, *args, **kwargs)
-
-
-def rows(text):
-    return list(csv.DictReader(io.StringIO(text)))
-
-
-def write(folder, name, text):
-    path = pathlib.Path(folder) / name
-    path.write_text(text)
-    return path
 
 
 def study_files(script="studyA.yaml"):
@@ -121,7 +101,7 @@ def with_folder(option, words):
     return [word.removesuffix(".csv") if option in ("--shard", "--format") else word for word in words]
 
 
-class Options(unittest.TestCase):
+class Options(Case):
     def test_the_tables_above_name_every_command(self):
         def below(command):
             text = pirsim(*command, "--help").stdout
@@ -135,51 +115,49 @@ class Options(unittest.TestCase):
         makers = {command for command in {*COMMANDS, *OTHERS}
                   if "--output" in options_of(command)}
         self.assertEqual(makers, {*WRITTEN, *SLOW})
-        with tempfile.TemporaryDirectory() as folder:
-            write(folder, "log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
-            pirsim(*SHORT, "--shard", "1/1", "-o", "shards", "-q", cwd=folder)
-            for command, (args, files) in WRITTEN.items():
-                told = pirsim(*command, *args, cwd=folder).stderr
-                line = [line for line in told.splitlines() if line.startswith("wrote ")]
-                self.assertEqual(len(line), 1, (command, told))
-                for file in files.split():
-                    self.assertRegex(line[0], rf"(wrote |, ){re.escape(file)}(?=[:,]|$)", command)
-                    self.assertTrue((pathlib.Path(folder) / file).exists(), file)
-                (pathlib.Path(folder) / "marks.yaml").unlink(missing_ok=True)  # is never overwritten
-                self.assertNotIn("wrote", pirsim(*command, *args, "-q", cwd=folder).stderr, command)
+        self.write("log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
+        pirsim(*SHORT, "--shard", "1/1", "-o", "shards", "-q", cwd=self.folder)
+        for command, (args, files) in WRITTEN.items():
+            told = pirsim(*command, *args, cwd=self.folder).stderr
+            line = [line for line in told.splitlines() if line.startswith("wrote ")]
+            self.assertEqual(len(line), 1, (command, told))
+            for file in files.split():
+                self.assertRegex(line[0], rf"(wrote |, ){re.escape(file)}(?=[:,]|$)", command)
+                self.assertTrue((self.folder / file).exists(), file)
+            (self.folder / "marks.yaml").unlink(missing_ok=True)  # is never overwritten
+            self.assertNotIn("wrote", pirsim(*command, *args, "-q", cwd=self.folder).stderr, command)
 
     def test_no_command_offers_an_option_that_it_refuses(self):
         """The room is the last to be read and isn't there: who gets that far has taken option and script."""
-        with tempfile.TemporaryDirectory() as folder:
-            for command, (script, *rest) in COMMANDS.items():
-                offered = options_of(command)
-                self.assertIn("--scene", offered)
-                for option, takes in offered.items():
-                    if option in ("--help", "--version", "--scene", "--script") or option in rest:
-                        continue
-                    if option in ("--output", "--print-config") and "-o" in rest:
-                        continue
-                    value = () if takes is None else (value_of(command, option),)
-                    if option == "--format":
-                        value += "--shard", "1/2"
-                    if command == ("check",) and option in ("--floor", "--ignore", "--output"):
-                        value += "--suggest",
-                    needed = with_folder(option, rest)
-                    study_of = "--script", DATA / "studies" / script
-                    if option in DAYS and command in ((), ("run",)):
-                        study_of = () if option in ("--staff", "--home") else ("--staff", 2)
-                    result = pirsim(*command, "--scene", "nowhere.gltf", *study_of, *needed, option, *value, code=4,
-                                    cwd=folder)
-                    self.assertIn("nowhere.gltf", result.stderr, (command, option))
-            for command, rest in OTHERS.items():
-                for option, takes in options_of(command).items():
-                    if option == "--help" or option in rest or option == "--output":
-                        continue
-                    value = () if takes is None else (value_of(command, option),)
-                    needed = (*rest, "--home") if option in FLAT_VALUES else rest[:1] if option == "--status" else rest
-                    result = subprocess.run([PIRSIM, *command, *needed, option, *value], capture_output=True, text=True,
-                                            cwd=folder)
-                    self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
+        for command, (script, *rest) in COMMANDS.items():
+            offered = options_of(command)
+            self.assertIn("--scene", offered)
+            for option, takes in offered.items():
+                if option in ("--help", "--version", "--scene", "--script") or option in rest:
+                    continue
+                if option in ("--output", "--print-config") and "-o" in rest:
+                    continue
+                value = () if takes is None else (value_of(command, option),)
+                if option == "--format":
+                    value += "--shard", "1/2"
+                if command == ("check",) and option in ("--floor", "--ignore", "--output"):
+                    value += "--suggest",
+                needed = with_folder(option, rest)
+                study_of = "--script", DATA / "studies" / script
+                if option in DAYS and command in ((), ("run",)):
+                    study_of = () if option in ("--staff", "--home") else ("--staff", 2)
+                result = pirsim(*command, "--scene", "nowhere.gltf", *study_of, *needed, option, *value, code=4,
+                                cwd=self.folder)
+                self.assertIn("nowhere.gltf", result.stderr, (command, option))
+        for command, rest in OTHERS.items():
+            for option, takes in options_of(command).items():
+                if option == "--help" or option in rest or option == "--output":
+                    continue
+                value = () if takes is None else (value_of(command, option),)
+                needed = (*rest, "--home") if option in FLAT_VALUES else rest[:1] if option == "--status" else rest
+                result = subprocess.run([PIRSIM, *command, *needed, option, *value], capture_output=True, text=True,
+                                        cwd=self.folder)
+                self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
 
     def test_no_command_offers_an_option_that_would_do_nothing(self):
         for command, unused in ((("coverage",), ("--replicates", "--tracer", "--verbose")),
@@ -195,13 +173,12 @@ class Options(unittest.TestCase):
                                              *command, code=2).stderr)
 
     def test_the_seed_of_a_survey_can_be_overridden(self):
-        with tempfile.TemporaryDirectory() as folder:
-            def map_of(*args):
-                pirsim("coverage", *study_files("studyB.yaml"), "-q", "--set", "spacing_m=0.5", "--set",
-                       "effects=[{missed_triggers: {probability: 0.5}}]", *args, "-o", folder)
-                return (pathlib.Path(folder) / "coverage.csv").read_bytes()
-            self.assertEqual(map_of("--seed", 5), map_of("--set", "seed=5"))
-            self.assertNotEqual(map_of("--seed", 5), map_of("--seed", 6))
+        def map_of(*args):
+            pirsim("coverage", *study_files("studyB.yaml"), "-q", "--set", "spacing_m=0.5", "--set",
+                   "effects=[{missed_triggers: {probability: 0.5}}]", *args, "-o", self.folder)
+            return (self.folder / "coverage.csv").read_bytes()
+        self.assertEqual(map_of("--seed", 5), map_of("--set", "seed=5"))
+        self.assertNotEqual(map_of("--seed", 5), map_of("--seed", 6))
 
     def test_the_response_is_a_setting_like_others(self):
         for given in (study_files(), ("--scene", "room.gltf", "--staff", 1)):
@@ -222,24 +199,23 @@ class Options(unittest.TestCase):
         self.assertIn("--output must stand after 'preview'", refused)
 
     def test_words_of_an_earlier_version_do_the_same_and_are_not_in_the_help(self):
-        with tempfile.TemporaryDirectory() as folder:
-            write(folder, "log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
-            pirsim(*SHORT, "--shard", "1/2", "-o", "shards", "-q", cwd=folder)
-            day = *ROOM, "--staff", 1, "--days", 1, "--from", "08:00", "--to", "08:10"
-            for old, now in ((("day", *day), ("run", *day)),
-                             (("day", *day, "--print-script"), ("run", *day, "--print-config")),
-                             (("status", "shards"), ("merge", "shards", "--status")),
-                             (("home", "-o", "a.gltf"), ("room", "--home", "-o", "a.gltf")),
-                             (("log", "log.csv", "--window", 5, "-o", "b.csv"), ("log", "log.csv", "--step", 5, "-o", "b.csv")),
-                             (("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "--out", "log.csv"),
-                              ("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "-o", "log.csv"))):
-                code = 4 if old[0] == "reconcile" else 0
-                with self.subTest(old=old):
-                    one, other = (pirsim(*words, cwd=folder, code=code) for words in (old, now))
-                    self.assertEqual((one.stdout, one.stderr), (other.stdout, other.stderr))
-                    text = pirsim(*now[:1], "--help").stdout + pirsim("--help").stdout
-                    for word in {*map(str, old)} - {*map(str, now)}:
-                        self.assertNotRegex(text, rf"(\n  |,){word}[ ,]", word)
+        self.write("log.csv", "time,a\n2026-03-02 08:00:00,1\n2026-03-02 08:00:10,0\n2026-03-02 08:01:00,1\n")
+        pirsim(*SHORT, "--shard", "1/2", "-o", "shards", "-q", cwd=self.folder)
+        day = *ROOM, "--staff", 1, "--days", 1, "--from", "08:00", "--to", "08:10"
+        for old, now in ((("day", *day), ("run", *day)),
+                         (("day", *day, "--print-script"), ("run", *day, "--print-config")),
+                         (("status", "shards"), ("merge", "shards", "--status")),
+                         (("home", "-o", "a.gltf"), ("room", "--home", "-o", "a.gltf")),
+                         (("log", "log.csv", "--window", 5, "-o", "b.csv"), ("log", "log.csv", "--step", 5, "-o", "b.csv")),
+                         (("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "--out", "log.csv"),
+                          ("reconcile", *ROOM, "--script", "studyA.yaml", "--measured", "a.gltf", "-o", "log.csv"))):
+            code = 4 if old[0] == "reconcile" else 0
+            with self.subTest(old=old):
+                one, other = (pirsim(*words, cwd=self.folder, code=code) for words in (old, now))
+                self.assertEqual((one.stdout, one.stderr), (other.stdout, other.stderr))
+                text = pirsim(*now[:1], "--help").stdout + pirsim("--help").stdout
+                for word in {*map(str, old)} - {*map(str, now)}:
+                    self.assertNotRegex(text, rf"(\n  |,){word}[ ,]", word)
         self.assertNotIn("--tracer", pirsim("--help").stdout)
         self.assertEqual(pirsim("help", "home").stdout.splitlines()[2:], pirsim("help", "room").stdout.splitlines()[2:])
 
@@ -274,12 +250,11 @@ class Options(unittest.TestCase):
         for option in ("-o", "--summary", "--zones"):
             self.assertEqual(study(option, "/nonexistent/x.csv", code=4).stderr,
                              "/nonexistent/x.csv: error: can't write: there is no folder '/nonexistent'\n")
-        with tempfile.TemporaryDirectory() as folder:
-            file = write(folder, "file", "")
-            self.assertIn(f"'{file}' isn't a folder", study("-o", file / "x.csv", code=4).stderr)
+        file = self.write("file", "")
+        self.assertIn(f"'{file}' isn't a folder", study("-o", file / "x.csv", code=4).stderr)
 
 
-class Days(unittest.TestCase):
+class Days(Case):
     OFFICE = "--scene", None, "--staff", 8, "--from", "09:00", "--to", "09:05", "--set", "sensing.tick_rate_hz=10", "-q"
 
     def day(self, *args, **kwargs):
@@ -287,45 +262,43 @@ class Days(unittest.TestCase):
         return pirsim("run", *(scene if arg is None else arg for arg in self.OFFICE), *args, **kwargs)
 
     def test_a_week_of_an_office_and_the_script_that_it_makes(self):
-        with tempfile.TemporaryDirectory() as folder:
-            week = self.day("--occupants", f"{folder}/who.csv", "--report", f"{folder}/week.html").stdout
-            script = write(folder, "week.yaml", self.day("--print-config").stdout)
-            self.assertEqual(study("-q", scene="open_office.gltf", script=script).stdout, week)
-            table = rows(week)
-            self.assertEqual(len(table), 5 * 300)
-            self.assertEqual((table[0]["time"], table[-1]["time"]), ("2026-03-02T09:00:01", "2026-03-06T09:05:00"))
-            self.assertGreater(max(int(row["people"]) for row in table), 3)
-            who = rows((pathlib.Path(folder) / "who.csv").read_text())
-            inside = {}
-            for row in who:
-                key = row["replicate"], row["time_s"]
-                inside[key] = inside.get(key, 0) + (row["where"] == "inside")
-            for row in table:
-                self.assertEqual(int(row["people"]), inside.get((row["replicate"], row["time_s"]), 0))
-            self.assertIn("People in the room", (pathlib.Path(folder) / "week.html").read_text())
+        week = self.day("--occupants", f"{self.folder}/who.csv", "--report", f"{self.folder}/week.html").stdout
+        script = self.write("week.yaml", self.day("--print-config").stdout)
+        self.assertEqual(study("-q", scene="open_office.gltf", script=script).stdout, week)
+        table = rows(week)
+        self.assertEqual(len(table), 5 * 300)
+        self.assertEqual((table[0]["time"], table[-1]["time"]), ("2026-03-02T09:00:01", "2026-03-06T09:05:00"))
+        self.assertGreater(max(int(row["people"]) for row in table), 3)
+        who = rows((self.folder / "who.csv").read_text())
+        inside = {}
+        for row in who:
+            key = row["replicate"], row["time_s"]
+            inside[key] = inside.get(key, 0) + (row["where"] == "inside")
+        for row in table:
+            self.assertEqual(int(row["people"]), inside.get((row["replicate"], row["time_s"]), 0))
+        self.assertIn("People in the room", (self.folder / "week.html").read_text())
 
     def test_days_are_blocks_of_an_array_and_go_on_where_they_stopped(self):
-        with tempfile.TemporaryDirectory() as folder:
-            whole = self.day("--threads", 1).stdout
-            for i in (1, 2):
-                self.day("--shard", f"{i}/2", "-o", f"{folder}/shards", "--threads", 2)
-            pirsim("merge", f"{folder}/shards", "-o", f"{folder}/merged.csv", "-q")
-            self.assertEqual((pathlib.Path(folder) / "merged.csv").read_text(), whole)
-            script = write(folder, "week.yaml", self.day("--print-config").stdout)
-            for args in (("merge", f"{folder}/shards", "--script", script, "--summary", f"{folder}/merged.md"),
-                         ("--scene", DATA / "rooms/open_office.gltf", "--script", script, "--summary",
-                          f"{folder}/whole.md")):
-                pirsim(*args, "-o", f"{folder}/again.csv", "-q")
-            self.assertEqual(*((pathlib.Path(folder) / f"{name}.md").read_text() for name in ("merged", "whole")))
-            shard = pathlib.Path(folder) / "shards/shard-0001-of-0002.csv"
-            bytes_before = shard.read_bytes()
-            self.assertIn("is one of the files of the shards", pirsim("merge", f"{folder}/shards", "-o", shard, code=2).stderr)
-            self.assertEqual(shard.read_bytes(), bytes_before)
-            self.day("-o", f"{folder}/days.csv", "--max-time", "0.001s", "--threads", 1, code=75)
-            self.day("-o", f"{folder}/days.csv", "--resume")
-            self.assertEqual((pathlib.Path(folder) / "days.csv").read_text(), whole)
-            refused = self.day("-o", f"{folder}/days.csv", "--resume", "--cleaning", "20:00", code=3).stderr
-            self.assertIn("days.csv", refused)
+        whole = self.day("--threads", 1).stdout
+        for i in (1, 2):
+            self.day("--shard", f"{i}/2", "-o", f"{self.folder}/shards", "--threads", 2)
+        pirsim("merge", f"{self.folder}/shards", "-o", f"{self.folder}/merged.csv", "-q")
+        self.assertEqual((self.folder / "merged.csv").read_text(), whole)
+        script = self.write("week.yaml", self.day("--print-config").stdout)
+        for args in (("merge", f"{self.folder}/shards", "--script", script, "--summary", f"{self.folder}/merged.md"),
+                     ("--scene", DATA / "rooms/open_office.gltf", "--script", script, "--summary",
+                      f"{self.folder}/whole.md")):
+            pirsim(*args, "-o", f"{self.folder}/again.csv", "-q")
+        self.assertEqual(*((self.folder / f"{name}.md").read_text() for name in ("merged", "whole")))
+        shard = self.folder / "shards/shard-0001-of-0002.csv"
+        bytes_before = shard.read_bytes()
+        self.assertIn("is one of the files of the shards", pirsim("merge", f"{self.folder}/shards", "-o", shard, code=2).stderr)
+        self.assertEqual(shard.read_bytes(), bytes_before)
+        self.day("-o", f"{self.folder}/days.csv", "--max-time", "0.001s", "--threads", 1, code=75)
+        self.day("-o", f"{self.folder}/days.csv", "--resume")
+        self.assertEqual((self.folder / "days.csv").read_text(), whole)
+        refused = self.day("-o", f"{self.folder}/days.csv", "--resume", "--cleaning", "20:00", code=3).stderr
+        self.assertIn("days.csv", refused)
 
     def test_a_day_of_meetings(self):
         held = "schedule.meetings.held=[{at: '10:00', duration_min: 5, people: 4}]"
@@ -368,18 +341,11 @@ class Days(unittest.TestCase):
             self.assertIn(told, pirsim("run", *room, "--staff", 2, option, value, code=2).stderr)
 
 
-class Light(unittest.TestCase):
+class Light(Case):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.two_rooms = pathlib.Path(folder.name) / "rows.csv"
+        cls.two_rooms = made_folder(cls.addClassCleanup) / "rows.csv"
         study("-q", "--replicates", 1, "-o", cls.two_rooms, scene="two_rooms.gltf", script="two_rooms.yaml")
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
 
     def table(self, name):
         return rows((self.folder / name).read_text())
@@ -405,7 +371,7 @@ class Light(unittest.TestCase):
         self.assertIn("living_room", (self.folder / "light.html").read_text())
 
     def test_a_rule_that_names_areas_alone_takes_the_sensors_that_watch_them(self):
-        rule = write(self.folder, "rule.yaml", "pirsim_control: 1\nlights: [{area: living_room}, {area: bedroom}]\n")
+        rule = self.write("rule.yaml", "pirsim_control: 1\nlights: [{area: living_room}, {area: bedroom}]\n")
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf"
         by_all, by_own, plain = (
             pirsim("control", self.two_rooms, *more, "-o", self.folder / "costs.csv").stderr + (self.folder / "costs.csv").read_text()
@@ -427,17 +393,16 @@ class Light(unittest.TestCase):
     def test_a_dataset_and_a_log_have_days(self):
         for room in (1, 2):
             for day in (1, 2, 3):
-                folder = self.folder / "set" / "rows" / f"room_{room:04}"
-                folder.mkdir(parents=True, exist_ok=True)
                 lines = [f"{room},{day},{30 * (i + 1)},2026-03-0{day}T10:{(30 * (i + 1)) // 60:02}:{30 * (i + 1) % 60:02},"
                          f"occupied,1,0,0,{int(i == 0)},{'' if room == 2 else 0}" for i in range(60)]
-                write(folder, f"day_0{day}.csv", "room,day,time_s,time,phase,people,arrivals,departures,PIR1,PIR2\n" + "\n".join(lines) + "\n")
+                self.write(f"set/rows/room_{room:04}/day_0{day}.csv",
+                           "room,day,time_s,time,phase,people,arrivals,departures,PIR1,PIR2\n" + "\n".join(lines) + "\n")
         pirsim("control", self.folder / "set", "--delay", 10, "-q", "-o", self.folder / "costs.csv")
         ten = next(row for row in self.table("costs.csv") if row["delay_min"] == "10")
         self.assertEqual((ten["days"], ten["false_offs"]), ("6", "6"))
         self.assertAlmostEqual(float(ten["lit_h"]), 6 * 21 * 30 / 3600)
         self.assertEqual(ten["dark_share_low"], ten["dark_share_high"])  # all days are alike
-        log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
+        log = self.write("log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
         told = pirsim("control", "--log", log, "--delay", 5, "-o", self.folder / "log_costs.csv")
         self.assertIn("isn't known", told.stdout)
         self.assertIn("warning: the rows have no people", told.stderr)
@@ -448,11 +413,11 @@ class Light(unittest.TestCase):
     def test_a_page_has_a_line_a_run_and_one_of_people_where_they_are_known(self):
         head = "replicate,trial,time_s,time,phase,people,PIR1\n"
         runs = [[f"{run},a,{60 * i},2026-03-02T08:{i:02}:00,x,{int(i > 15)},{int(run == 1)}\n" for i in range(1, 31)] for run in (1, 2)]
-        both = write(self.folder, "both.csv", head + "".join(runs[0] + runs[1]))
-        holed = write(self.folder, "holed.csv", head + "".join(runs[0]).replace("2026-03-02T08:07:00", ""))
+        both = self.write("both.csv", head + "".join(runs[0] + runs[1]))
+        holed = self.write("holed.csv", head + "".join(runs[0]).replace("2026-03-02T08:07:00", ""))
         self.assertIn(":8:9: error: time: expected a local time", pirsim("control", holed, "--light", self.folder / "h.csv", "--report", self.folder / "h.html", code=3).stderr)
         self.assertFalse((self.folder / "h.csv").exists())
-        log = write(self.folder, "log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
+        log = self.write("log.csv", "time,PIR\n" + "".join(f"2026-03-02T10:{i:02}:00,{int(i == 3)}\n" for i in range(30)))
         pirsim("control", "--log", log, "--delay", 0, "--report", self.folder / "l.html")
         self.assertNotIn('"people":true', (self.folder / "l.html").read_text())  # a line of them, hatched or not
         pirsim("control", both, "--report", self.folder / "b.html")
@@ -462,7 +427,7 @@ class Light(unittest.TestCase):
 
     def test_which_delay_to_take_is_told_by_default(self):
         lines = [f"{day},a,{60 * i},x,1,{int(i % 8 == 1)}\n" for day in range(1, 25) for i in range(1, 121)]
-        weeks = write(self.folder, "weeks.csv", "replicate,trial,time_s,phase,people,PIR1\n" + "".join(lines))
+        weeks = self.write("weeks.csv", "replicate,trial,time_s,phase,people,PIR1\n" + "".join(lines))
         sentence = "light: 7 min: off on somebody less than once a week, 0 s of empty light a day; at 10 min not once, and 0 s."
         told = pirsim("control", weeks, "--report", self.folder / "light.html")
         self.assertIn(sentence, told.stdout)
@@ -470,95 +435,90 @@ class Light(unittest.TestCase):
         self.assertIn("too few to tell which delay goes off on somebody less than 0.5 times a week: 42 days without",
                       pirsim("control", weeks, "--at-most", 0.5).stdout)
         self.assertIn("--delay: 5 is given twice", pirsim("control", weeks, "--delay", 5, 1, 5, code=2).stderr)
-        twice = write(self.folder, "twice.yaml", "pirsim_control: 1\nlights: [{sensors: [PIR1, PIR1], together: {sensors: 2}}]\n")
+        twice = self.write("twice.yaml", "pirsim_control: 1\nlights: [{sensors: [PIR1, PIR1], together: {sensors: 2}}]\n")
         self.assertIn("twice.yaml:2:27: error: light: sensors: 'PIR1' is named twice", pirsim("control", weeks, "--rule", twice, code=3).stderr)
 
     def test_what_are_no_rows_is_told_with_its_place(self):
-        good = write(self.folder, "rows.csv", "replicate,trial,time_s,phase,people,PIR1\n1,a,1,x,0,1\n1,a,2,x,0,0\n")
+        good = self.write("rows.csv", "replicate,trial,time_s,phase,people,PIR1\n1,a,1,x,0,1\n1,a,2,x,0,0\n")
         for name, text, told in (("log.csv", "time,PIR1\n2026-03-02T10:00:00,1\n", "log.csv:1:1: error: these aren't rows"),
                                  ("bad.csv", good.read_text() + "1,a,3,x,one,0\n", "bad.csv:4:9: error: people: expected a number of people, got 'one'"),
                                  ("cut.csv", good.read_text() + "1,a,3\n", "cut.csv:4:1: error: expected 6 fields, got 3"),
                                  ("empty.csv", "", "empty.csv:1:1: error: expected a line with column names")):
-            result = pirsim("control", write(self.folder, name, text), code=3)
+            result = pirsim("control", self.write(name, text), code=3)
             self.assertIn(told, result.stderr)
-        other = write(self.folder, "other.csv", good.read_text().replace("PIR1", "PIR2"))
+        other = self.write("other.csv", good.read_text().replace("PIR1", "PIR2"))
         self.assertIn("aren't those of", pirsim("control", good, other, code=3).stderr)
         self.assertIn("no dataset", pirsim("control", self.folder, code=3).stderr)
         self.assertIn("say which rows", pirsim("control", code=2).stderr)
         self.assertIn("say which rows", pirsim("control", good, "--log", good, code=2).stderr)
 
 
-class Homes(unittest.TestCase):
-    def day_of_two(self, folder):
+class Homes(Case):
+    def day_of_two(self):
         flat = DATA / "rooms" / "flat.gltf"
         text = pirsim("run", "--scene", flat, "--home", 2, "--days", 2, "--print-config").stdout
-        return flat, write(folder, "home.yaml", text + "sensing: {response: zones, tick_rate_hz: 5}\n")
+        return flat, self.write("home.yaml", text + "sensing: {response: zones, tick_rate_hz: 5}\n")
 
     def test_check_tells_who_is_expected_and_what_has_no_place(self):
-        with tempfile.TemporaryDirectory() as folder:
-            flat, script = self.day_of_two(folder)
-            checked = pirsim("check", "--scene", flat, "--script", script)
-            self.assertIn("household: 2 days from 2026-03-02 (2 working days)", checked.stdout)
-            for person, bed in (("resident_1", "bed_left"), ("resident_2", "bed_right")):
-                line = next(line for line in checked.stdout.splitlines() if line.split()[:1] == [person])
-                self.assertIn(f"bed {bed}; up 0", line)
-                hours = sum(float(hours) for hours in re.findall(r"\w+ ([\d.]+)(?:,|$)", line.split("day:")[1]))
-                self.assertAlmostEqual(hours, 24, delta=0.06 * 11)  # told to a tenth of an hour
-            self.assertNotIn("no place for", checked.stderr)
-            room = json.loads(flat.read_text())
-            for node in room["nodes"]:
-                mark = node.get("extras", {}).get("pirsim", {})
-                if mark.get("type") == "place":
-                    mark["for"] = [use for use in mark["for"] if use not in ("toilet", "cook")] or ["phone"]
-            poor = write(folder, "poor.gltf", json.dumps(room))
-            self.assertIn("home.yaml:7:3: warning: household: no place for toilet (`for: [toilet]` in its mark): residents do "
-                          "that where they are (and 1 more: cooking)",
-                          pirsim("check", "-q", "--scene", poor, "--script", script).stderr)
+        flat, script = self.day_of_two()
+        checked = pirsim("check", "--scene", flat, "--script", script)
+        self.assertIn("household: 2 days from 2026-03-02 (2 working days)", checked.stdout)
+        for person, bed in (("resident_1", "bed_left"), ("resident_2", "bed_right")):
+            line = next(line for line in checked.stdout.splitlines() if line.split()[:1] == [person])
+            self.assertIn(f"bed {bed}; up 0", line)
+            hours = sum(float(hours) for hours in re.findall(r"\w+ ([\d.]+)(?:,|$)", line.split("day:")[1]))
+            self.assertAlmostEqual(hours, 24, delta=0.06 * 11)  # told to a tenth of an hour
+        self.assertNotIn("no place for", checked.stderr)
+        room = json.loads(flat.read_text())
+        for node in room["nodes"]:
+            mark = node.get("extras", {}).get("pirsim", {})
+            if mark.get("type") == "place":
+                mark["for"] = [use for use in mark["for"] if use not in ("toilet", "cook")] or ["phone"]
+        poor = self.write("poor.gltf", json.dumps(room))
+        self.assertIn("home.yaml:7:3: warning: household: no place for toilet (`for: [toilet]` in its mark): residents do "
+                      "that where they are (and 1 more: cooking)",
+                      pirsim("check", "-q", "--scene", poor, "--script", script).stderr)
 
     def test_a_log_has_the_rows_changes_and_each_activity_begins_and_ends(self):
-        with tempfile.TemporaryDirectory() as folder:
-            flat, script = self.day_of_two(folder)
-            out = pathlib.Path(folder)
-            pirsim("--scene", flat, "--script", script, "--replicates", 1, "-q", "-o", out / "rows.csv", "--casas",
-                   out / "log.txt")
-            rose = {}
-            before = {}
-            for row in rows((out / "rows.csv").read_text()):
-                if row["time_s"] == "1":
-                    before = {}
-                for name in row:
-                    if name.startswith(("PIR_", "door_")):
-                        rose[name] = rose.get(name, 0) + (row[name] == "1" and before.get(name, "0") == "0")
-                        before[name] = row[name]
-            lines = [line.split() for line in (out / "log.txt").read_text().splitlines()]
-            seen = {tuple(line[:4]) for line in lines}  # one with two labels stands twice
-            for name, times in rose.items():
-                self.assertEqual(sum(line[2] == name and line[3] in ("ON", "OPEN") for line in seen), times, name)
-            open_now = set()
-            for line in lines:
-                if line[5:] == ["begin"]:
-                    self.assertNotIn(line[4], open_now)
-                    open_now.add(line[4])
-                elif line[5:] == ["end"]:
-                    open_now.remove(line[4])
-            self.assertEqual(open_now, set())
-            self.assertEqual([line[:2] for line in lines], sorted(line[:2] for line in lines))
-            self.assertIn("--casas: a log has a date", study("--casas", out / "x.txt", code=2).stderr)
+        flat, script = self.day_of_two()
+        pirsim("--scene", flat, "--script", script, "--replicates", 1, "-q", "-o", self.folder / "rows.csv", "--casas",
+               self.folder / "log.txt")
+        rose = {}
+        before = {}
+        for row in rows((self.folder / "rows.csv").read_text()):
+            if row["time_s"] == "1":
+                before = {}
+            for name in row:
+                if name.startswith(("PIR_", "door_")):
+                    rose[name] = rose.get(name, 0) + (row[name] == "1" and before.get(name, "0") == "0")
+                    before[name] = row[name]
+        lines = [line.split() for line in (self.folder / "log.txt").read_text().splitlines()]
+        seen = {tuple(line[:4]) for line in lines}  # one with two labels stands twice
+        for name, times in rose.items():
+            self.assertEqual(sum(line[2] == name and line[3] in ("ON", "OPEN") for line in seen), times, name)
+        open_now = set()
+        for line in lines:
+            if line[5:] == ["begin"]:
+                self.assertNotIn(line[4], open_now)
+                open_now.add(line[4])
+            elif line[5:] == ["end"]:
+                open_now.remove(line[4])
+        self.assertEqual(open_now, set())
+        self.assertEqual([line[:2] for line in lines], sorted(line[:2] for line in lines))
+        self.assertIn("--casas: a log has a date", study("--casas", self.folder / "x.txt", code=2).stderr)
 
 
-class OwnClock(unittest.TestCase):
+class OwnClock(Case):
     """The example of docs/formats/script.md: anna comes at 06:45 and goes at 08:15, in a run that begins at 06:00."""
     PAGE = HERE.parents[1] / "docs" / "formats" / "script.md"
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         example = next(block for block in re.findall(r"```yaml part of script\n(.*?)```", self.PAGE.read_text(), re.DOTALL)
                        if block.startswith("begin:"))
         self.assertEqual(example.count("\n"), 3)
-        self.files = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", write(
-            self.folder, "anna.yaml", "pirsim_script: 1\n" + example)
+        self.files = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", self.write(
+            "anna.yaml", "pirsim_script: 1\n" + example)
 
     def test_rows_have_the_time_and_people_keep_to_it(self):
         pirsim(*self.files, "-o", self.folder / "rows.csv", "--occupants", self.folder / "who.csv", "-q")
@@ -571,7 +531,7 @@ class OwnClock(unittest.TestCase):
         resolved = json.loads((self.folder / "rows.csv.json").read_text())["resolved_script"]
         self.assertIn("begin: 2026-03-02T06:00", resolved)
         self.assertIn("at: 06:45", resolved)
-        again = pirsim(*self.files[:3], write(self.folder, "again.yaml", resolved), "-q").stdout
+        again = pirsim(*self.files[:3], self.write("again.yaml", resolved), "-q").stdout
         self.assertEqual(again, (self.folder / "rows.csv").read_text())
         later = rows(pirsim(*self.files, "--set", "begin=2026-03-02T06:40", "-q").stdout)
         self.assertEqual([row["time"] for row in later if row["phase"] != "outside"], seen)
@@ -617,7 +577,7 @@ class OwnClock(unittest.TestCase):
         self.assertIn(" at 20 s\n", told)
 
 
-class FailedRuns(unittest.TestCase):
+class FailedRuns(Case):
     """Seats before a wall, scattered so far that some can't be reached: replicates 6 and 10 of S5."""
     FAILING = ("-q", "--threads", 1, "--replicates", 12, "--seed", 2, "--set", "trials.for_each.seat=[S5,S6]", "--set",
                "people.0.seat_scatter.position_sd_m=0.2", "--set", "people.0.actions.3.work.duration_s=2")
@@ -626,48 +586,41 @@ class FailedRuns(unittest.TestCase):
         return study(*self.FAILING, *args, scene="meeting_room_alt1.gltf", **kwargs)
 
     def test_all_other_runs_have_rows_and_each_that_failed_is_told_with_person_and_place(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            told = self.failing("-o", folder / "rows.csv", "--summary", folder / "table.md", code=6).stderr
-            self.assertIn("2 runs failed and have no rows", told)
-            self.assertRegex(told, r"trial S5, replicate 6, second 0\.02: 'occupant' at \([\d., -]+\) m can.t reach ")
-            table = rows((folder / "rows.csv").read_text())
-            self.assertEqual(len({(row["replicate"], row["trial"]) for row in table}), 22)
-            failed = json.loads((folder / "rows.csv.json").read_text())["people"]["failed_runs"]
-            self.assertEqual([(run["trial"], run["replicate"]) for run in failed], [("S5", 6), ("S5", 10)])
-            self.assertIn("'occupant' at (", failed[0]["message"])
-            self.assertIn("Runs that failed and are left out: 2.", (folder / "table.md").read_text())
+        told = self.failing("-o", self.folder / "rows.csv", "--summary", self.folder / "table.md", code=6).stderr
+        self.assertIn("2 runs failed and have no rows", told)
+        self.assertRegex(told, r"trial S5, replicate 6, second 0\.02: 'occupant' at \([\d., -]+\) m can.t reach ")
+        table = rows((self.folder / "rows.csv").read_text())
+        self.assertEqual(len({(row["replicate"], row["trial"]) for row in table}), 22)
+        failed = json.loads((self.folder / "rows.csv.json").read_text())["people"]["failed_runs"]
+        self.assertEqual([(run["trial"], run["replicate"]) for run in failed], [("S5", 6), ("S5", 10)])
+        self.assertIn("'occupant' at (", failed[0]["message"])
+        self.assertIn("Runs that failed and are left out: 2.", (self.folder / "table.md").read_text())
 
     def test_a_run_that_failed_is_told_by_the_clock_that_rows_have(self):
-        with tempfile.TemporaryDirectory() as name:
-            told = self.failing("--set", "begin=2026-03-02T06:00", "-o", f"{name}/rows.csv", code=6).stderr
-            self.assertIn("trial S5, replicate 6, 2026-03-02T06:00:00: 'occupant' at (", told)
-            failed = json.loads(pathlib.Path(name, "rows.csv.json").read_text())["people"]["failed_runs"]
-            self.assertEqual([run["time"] for run in failed], ["2026-03-02T06:00:00"] * 2)
+        told = self.failing("--set", "begin=2026-03-02T06:00", "-o", f"{self.folder}/rows.csv", code=6).stderr
+        self.assertIn("trial S5, replicate 6, 2026-03-02T06:00:00: 'occupant' at (", told)
+        failed = json.loads(pathlib.Path(self.folder, "rows.csv.json").read_text())["people"]["failed_runs"]
+        self.assertEqual([run["time"] for run in failed], ["2026-03-02T06:00:00"] * 2)
 
     def test_strict_stops_at_the_first_keeps_what_is_finished_and_can_be_resumed(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            self.failing("-o", folder / "whole.csv", code=6)
-            told = self.failing("-o", folder / "rows.csv", "--strict", code=5).stderr
-            self.assertIn("trial S5, replicate 6", told)
-            self.assertFalse((folder / "rows.csv").exists())
-            self.failing("-o", folder / "rows.csv", "--resume", code=6)
-            for ending in (".csv", ".csv.json"):
-                self.assertEqual((folder / ("rows" + ending)).read_bytes(), (folder / ("whole" + ending)).read_bytes())
+        self.failing("-o", self.folder / "whole.csv", code=6)
+        told = self.failing("-o", self.folder / "rows.csv", "--strict", code=5).stderr
+        self.assertIn("trial S5, replicate 6", told)
+        self.assertFalse((self.folder / "rows.csv").exists())
+        self.failing("-o", self.folder / "rows.csv", "--resume", code=6)
+        for ending in (".csv", ".csv.json"):
+            self.assertEqual((self.folder / ("rows" + ending)).read_bytes(), (self.folder / ("whole" + ending)).read_bytes())
 
     def test_shards_note_their_own_and_merge_tells_of_all(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            self.failing("-o", folder / "whole.csv", code=6)
-            for i in (1, 2):
-                self.failing("-o", folder / "shards", "--shard", f"{i}/2", code=6)
-            told = pirsim("merge", folder / "shards", "-o", folder / "merged.csv", code=6).stderr
-            self.assertIn("2 runs failed and have no rows\n  trial S5, replicate 6, second 0.02: 'occupant' at ", told)
-            self.assertEqual((folder / "merged.csv").read_bytes(), (folder / "whole.csv").read_bytes())
+        self.failing("-o", self.folder / "whole.csv", code=6)
+        for i in (1, 2):
+            self.failing("-o", self.folder / "shards", "--shard", f"{i}/2", code=6)
+        told = pirsim("merge", self.folder / "shards", "-o", self.folder / "merged.csv", code=6).stderr
+        self.assertIn("2 runs failed and have no rows\n  trial S5, replicate 6, second 0.02: 'occupant' at ", told)
+        self.assertEqual((self.folder / "merged.csv").read_bytes(), (self.folder / "whole.csv").read_bytes())
 
 
-class Help(unittest.TestCase):
+class Help(Case):
     def test_help_of_a_command_is_what_the_command_says_itself(self):
         for command in (*COMMANDS, *OTHERS):
             text = pirsim("help", *command).stdout
@@ -708,7 +661,7 @@ class Help(unittest.TestCase):
         self.assertEqual(pirsim("-V").stdout, pirsim("--version").stdout)
 
 
-class CommandLine(unittest.TestCase):
+class CommandLine(Case):
     def test_help_starts_a_user_off_and_version_names_embree(self):
         self.assertIn("--scene", pirsim("--help").stdout)
         self.assertIn("Embree", pirsim("--version").stdout)
@@ -728,54 +681,48 @@ class CommandLine(unittest.TestCase):
             self.assertIn("--output", pirsim("reconcile", "-o", "folder", command, code=2).stderr)
 
     def test_no_output_replaces_an_input(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            reference = write(folder, "ref.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
-            script = write(folder, "s.yaml", (DATA / "studies/studyA.yaml").read_text().replace(
-                "stefansson2021_table1.csv", "ref.csv"))
-            patched = write(folder, "script_patched.yaml", script.read_text())
-            measured = write(folder, "where.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
-            self.assertIn("ref.csv", script.read_text())
-            room = "--scene", DATA / "rooms/meeting_room.gltf"
-            tries = [((*room, "--script", script, "-o", reference), reference),
-                     ((*room, "--script", script, "--summary", reference), reference),
-                     (("reconcile", *room, "--script", patched, "--measured", reference, "-o", folder), patched),
-                     (("reconcile", *room, "--script", script, "--measured", measured, "-o", folder), measured)]
-            for args, kept in tries:
-                before = kept.read_bytes()
-                told = pirsim(*args, code=2).stderr
-                self.assertEqual(told.count("error:"), 1, told)
-                self.assertIn(kept.name, told)
-                self.assertEqual(kept.read_bytes(), before)
+        reference = self.write("ref.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
+        script = self.write("s.yaml", (DATA / "studies/studyA.yaml").read_text().replace(
+            "stefansson2021_table1.csv", "ref.csv"))
+        patched = self.write("script_patched.yaml", script.read_text())
+        measured = self.write("where.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
+        self.assertIn("ref.csv", script.read_text())
+        room = "--scene", DATA / "rooms/meeting_room.gltf"
+        tries = [((*room, "--script", script, "-o", reference), reference),
+                 ((*room, "--script", script, "--summary", reference), reference),
+                 (("reconcile", *room, "--script", patched, "--measured", reference, "-o", self.folder), patched),
+                 (("reconcile", *room, "--script", script, "--measured", measured, "-o", self.folder), measured)]
+        for args, kept in tries:
+            before = kept.read_bytes()
+            told = pirsim(*args, code=2).stderr
+            self.assertEqual(told.count("error:"), 1, told)
+            self.assertIn(kept.name, told)
+            self.assertEqual(kept.read_bytes(), before)
 
     def test_what_can_not_be_compared_is_refused_before_any_work(self):
-        with tempfile.TemporaryDirectory() as folder:
-            script = write(folder, "s.yaml", "pirsim_script: 1\ntrials:\n  - {id: S1, people: [{id: a, actions: "
-                           "[{enter: door}, {sit: S3}, {work: {duration_s: 30}}, {leave: door}]}]}\n")
-            measured = write(folder, "m.csv", "trial,sensor,seconds\n" +
-                             "".join(f"S1,PIR{i},{5000 if i == 1 else 3}\n" for i in range(1, 6)))
-            call = ("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--measured", measured,
-                    "-o", f"{folder}/found", "-q")
-            for response in ("zones", "analog"):
-                self.assertIn("has 5000 s with motion, but a run lasts at most",
-                              pirsim(*call, "--response", response, code=3).stderr)
-            self.assertIn("dual_polarity can't be looked for: it acts on sensors with response: zones",
-                          pirsim(*call, "--effects", "dual_polarity", code=2).stderr)
+        script = self.write("s.yaml", "pirsim_script: 1\ntrials:\n  - {id: S1, people: [{id: a, actions: "
+                       "[{enter: door}, {sit: S3}, {work: {duration_s: 30}}, {leave: door}]}]}\n")
+        measured = self.write("m.csv", "trial,sensor,seconds\n" +
+                         "".join(f"S1,PIR{i},{5000 if i == 1 else 3}\n" for i in range(1, 6)))
+        call = ("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--measured", measured,
+                "-o", f"{self.folder}/found", "-q")
+        for response in ("zones", "analog"):
+            self.assertIn("has 5000 s with motion, but a run lasts at most",
+                          pirsim(*call, "--response", response, code=3).stderr)
+        self.assertIn("dual_polarity can't be looked for: it acts on sensors with response: zones",
+                      pirsim(*call, "--effects", "dual_polarity", code=2).stderr)
 
     def test_outputs_of_like_names_do_not_meet(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            study("--replicates", 1, "-o", folder / "a.csv.gz", "--summary", folder / "a.csv", "-q")
-            self.assertEqual(sorted(file.name for file in folder.iterdir()), ["a.csv", "a.csv.gz", "a.csv.gz.json"])
+        study("--replicates", 1, "-o", self.folder / "a.csv.gz", "--summary", self.folder / "a.csv", "-q")
+        self.assertEqual(sorted(file.name for file in self.folder.iterdir()), ["a.csv", "a.csv.gz", "a.csv.gz.json"])
 
     def test_a_sensor_is_not_named_as_a_column(self):
         room = (DATA / "rooms/meeting_room.gltf").read_text()
         self.assertIn('"PIR1"', room)
-        with tempfile.TemporaryDirectory() as folder:
-            scene = write(folder, "room.gltf", room.replace('"PIR1"', '"time_s"'))
-            told = pirsim("--scene", scene, "--script", DATA / "studies/studyA.yaml", "--sensors", DATA / "sensors",
-                          code=3).stderr
-            self.assertRegex(told, r"room.gltf:\d+:\d+: error: .*sensor id 'time_s' is the name of a column of rows")
+        scene = self.write("room.gltf", room.replace('"PIR1"', '"time_s"'))
+        told = pirsim("--scene", scene, "--script", DATA / "studies/studyA.yaml", "--sensors", DATA / "sensors",
+                      code=3).stderr
+        self.assertRegex(told, r"room.gltf:\d+:\d+: error: .*sensor id 'time_s' is the name of a column of rows")
 
     def test_a_ranking_that_can_not_be_written_is_an_error(self):
         if not pathlib.Path("/dev/full").exists():
@@ -794,14 +741,13 @@ class CommandLine(unittest.TestCase):
         self.assertIn("did you mean", study("--set", "sensing.tick_rate=7", code=3).stderr)
 
     def test_print_config_reads_back_to_itself(self):
-        with tempfile.TemporaryDirectory() as folder:
-            first = study("--print-config").stdout
-            path = write(folder, "resolved.yaml", first)
-            second = pirsim("--scene", "unused", "--script", path, "--print-config").stdout
+        first = study("--print-config").stdout
+        path = self.write("resolved.yaml", first)
+        second = pirsim("--scene", "unused", "--script", path, "--print-config").stdout
         self.assertEqual(first, second)
 
 
-class Hostile(unittest.TestCase):
+class Hostile(Case):
     def test_effects_are_listed_without_a_room_and_one_is_told_in_full(self):
         listed = [line.split()[0] for line in pirsim("effects").stdout.splitlines()]
         table = rows(pirsim("effects", "--format", "csv").stdout)
@@ -815,11 +761,10 @@ class Hostile(unittest.TestCase):
 
     def test_effects_of_a_script_are_kept_as_written_and_unknown_ones_refused(self):
         effects = ("--set", "effects=[{sensor_yaw: {yaw_deg: 3, sensor: PIR2}}, dead_time: {dead_s: 2}]")
-        with tempfile.TemporaryDirectory() as folder:
-            text = study(*effects, "--print-config").stdout
-            self.assertIn("yaw_deg: 3", text)
-            path = write(folder, "resolved.yaml", text)
-            self.assertEqual(pirsim("--scene", "none", "--script", path, "--print-config").stdout, text)
+        text = study(*effects, "--print-config").stdout
+        self.assertIn("yaw_deg: 3", text)
+        path = self.write("resolved.yaml", text)
+        self.assertEqual(pirsim("--scene", "none", "--script", path, "--print-config").stdout, text)
         refused = study("--set", "effects=[dead_tyme]", "--print-config", code=3).stderr
         self.assertIn("did you mean 'dead_time'?", refused)
 
@@ -835,13 +780,12 @@ class Hostile(unittest.TestCase):
                 self.assertIn(fragment, result.stderr)
 
     def test_an_unwritable_output_is_an_io_error_and_leaves_nothing(self):
-        with tempfile.TemporaryDirectory() as folder:
-            target = pathlib.Path(folder) / "no" / "such" / "folder.csv"
-            self.assertIn("folder.csv", study("--replicates", 1, "-o", target, code=4).stderr)
-            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+        target = self.folder / "no" / "such" / "folder.csv"
+        self.assertIn("folder.csv", study("--replicates", 1, "-o", target, code=4).stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
 
-class MainJob(unittest.TestCase):
+class MainJob(Case):
     @classmethod
     def setUpClass(cls):
         cls.text = study("--replicates", 2, "-q").stdout
@@ -890,17 +834,15 @@ class MainJob(unittest.TestCase):
         self.assertNotEqual(study(*args[:-2]).stdout, direct)
 
     def test_files_and_manifest_agree_with_stdout_and_the_zones_with_the_bits(self):
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            study("--replicates", 1, "-o", folder / "rows.csv", "--zones", folder / "zones.csv", "--summary",
-                  folder / "summary.csv", "--set", "trials.for_each.seat=[S3]")
-            text = (folder / "rows.csv").read_text()
-            manifest = json.loads((folder / "rows.csv.json").read_text())
-            self.assertEqual(manifest["rows"], len(rows(text)))
-            self.assertEqual(sorted(p.name for p in folder.iterdir()),
-                             ["rows.csv", "rows.csv.json", "summary.csv", "zones.csv"])
-            self.assertEqual(self.bits_from_zones((folder / "zones.csv").read_text()),
-                             [[row[f"PIR{i}"] for i in range(1, 6)] for row in rows(text)])
+        study("--replicates", 1, "-o", self.folder / "rows.csv", "--zones", self.folder / "zones.csv", "--summary",
+              self.folder / "summary.csv", "--set", "trials.for_each.seat=[S3]")
+        text = (self.folder / "rows.csv").read_text()
+        manifest = json.loads((self.folder / "rows.csv.json").read_text())
+        self.assertEqual(manifest["rows"], len(rows(text)))
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()),
+                         ["rows.csv", "rows.csv.json", "summary.csv", "zones.csv"])
+        self.assertEqual(self.bits_from_zones((self.folder / "zones.csv").read_text()),
+                         [[row[f"PIR{i}"] for i in range(1, 6)] for row in rows(text)])
 
     @staticmethod
     def bits_from_zones(text, ticks_per_window=50, zones_per_cluster=4):
@@ -918,81 +860,74 @@ class MainJob(unittest.TestCase):
         return [[bits[w, f"PIR{i}"] for i in range(1, 6)] for w in range(windows)]
 
 
-class Looking(unittest.TestCase):
+class Looking(Case):
     def test_check_reports_what_sensors_see_and_warns_of_a_blind_one(self):
         files = ("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml")
         result = pirsim("check", *files)
         self.assertIn("PIR5", result.stdout)
         self.assertNotIn("NOBODY", result.stderr)
-        with tempfile.TemporaryDirectory() as folder:
-            scene = json.loads((DATA / "rooms" / "meeting_room.gltf").read_text())
-            node = next(n for n in scene["nodes"] if n.get("extras", {}).get("pirsim", {}).get("id") == "PIR3")
-            node["rotation"] = [0, 1, 0, 0]  # looks into the wall behind it
-            blind = write(folder, "blind.gltf", json.dumps(scene))
-            result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
+        scene = json.loads((DATA / "rooms" / "meeting_room.gltf").read_text())
+        node = next(n for n in scene["nodes"] if n.get("extras", {}).get("pirsim", {}).get("id") == "PIR3")
+        node["rotation"] = [0, 1, 0, 0]  # looks into the wall behind it
+        blind = self.write("blind.gltf", json.dumps(scene))
+        result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
         self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
 
     def test_a_run_says_what_it_wrote_and_quiet_says_nothing(self):
-        with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "rows.csv"
-            report = pathlib.Path(folder) / "report.html"
-            once = "--replicates", 1
-            told = study(*once, "-o", out, "--report", report).stderr
-            n_rows = len(out.read_text().splitlines()) - 1
-            self.assertIn(f"wrote {out}: {n_rows} rows, {report}\n", told)
-            self.assertNotIn("wrote", study(*once, "-o", out, "-q").stderr)
-            self.assertNotIn("wrote", study(*once).stderr)
-            self.assertIn("all runs are there", study(*once, "-o", out, "--resume").stderr)
+        out = self.folder / "rows.csv"
+        report = self.folder / "report.html"
+        once = "--replicates", 1
+        told = study(*once, "-o", out, "--report", report).stderr
+        n_rows = len(out.read_text().splitlines()) - 1
+        self.assertIn(f"wrote {out}: {n_rows} rows, {report}\n", told)
+        self.assertNotIn("wrote", study(*once, "-o", out, "-q").stderr)
+        self.assertNotIn("wrote", study(*once).stderr)
+        self.assertIn("all runs are there", study(*once, "-o", out, "--resume").stderr)
 
     def test_preview_marks_what_it_is_asked_to(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pictures = {}
-            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "key", "all"):
-                out = pathlib.Path(folder) / f"{marks}.png"
-                pirsim("preview", *study_files(), "-o", out, "--labels", marks, "--width", 320, "--height", 180)
-                pictures[marks] = out.read_bytes()
-            self.assertEqual(len(set(pictures.values())), len(pictures))
-            refused = pirsim("preview", *study_files(), "-o", out, "--labels", "chairs", code=2).stderr
-            self.assertIn("seats", refused)
+        pictures = {}
+        for marks in ("none", "seats", "doors", "sensors", "people", "scale", "key", "all"):
+            out = self.folder / f"{marks}.png"
+            pirsim("preview", *study_files(), "-o", out, "--labels", marks, "--width", 320, "--height", 180)
+            pictures[marks] = out.read_bytes()
+        self.assertEqual(len(set(pictures.values())), len(pictures))
+        refused = pirsim("preview", *study_files(), "-o", out, "--labels", "chairs", code=2).stderr
+        self.assertIn("seats", refused)
 
     def test_the_scale_has_its_label_only_where_all_of_its_bar_is_seen(self):
         """Behind a wall, and beyond the picture's edge, the label would stand beside nothing."""
         def drawn(marks, camera, look_at):
-            with tempfile.TemporaryDirectory() as folder:
-                out = pathlib.Path(folder) / "p.png"
-                pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
-                       DATA / "studies" / "studyA.yaml", "-o", out, "--labels", marks, "--camera=" + camera,
-                       "--look-at=" + look_at, "--width", 320, "--height", 180)
-                return out.read_bytes()
+            out = self.folder / "p.png"
+            pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                   DATA / "studies" / "studyA.yaml", "-o", out, "--labels", marks, "--camera=" + camera,
+                   "--look-at=" + look_at, "--width", 320, "--height", 180)
+            return out.read_bytes()
         for camera, look_at in (("9,4,2", "3,1,-4"), ("4,3,-1", "6,0,-1")):
             self.assertEqual(drawn("scale", camera, look_at), drawn("none", camera, look_at))
         self.assertNotEqual(drawn("scale", "4,12,-4", "4,0,-4"), drawn("none", "4,12,-4", "4,0,-4"))
 
     def test_preview_writes_a_png_of_the_asked_size(self):
-        with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "p.png"
-            pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
-                   DATA / "studies" / "studyA.yaml", "-o", out, "--width", 160, "--height", 90, "--time", 20)
-            header = out.read_bytes()[:24]
+        out = self.folder / "p.png"
+        pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+               DATA / "studies" / "studyA.yaml", "-o", out, "--width", 160, "--height", 90, "--time", 20)
+        header = out.read_bytes()[:24]
         self.assertEqual(header[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (160, 90))
 
     def test_a_moment_after_the_end_of_the_run_is_refused_with_its_length(self):
-        with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "p.png"
-            refused = pirsim("preview", *study_files(), "-o", out, "--time", 99999, code=2).stderr
-            self.assertIn("time: 99999 s isn't in the run", refused)
-            end = re.search(r"lasts from 0 to (\S+) s", refused)[1]
-            self.assertFalse(out.exists())
-            pirsim("preview", *study_files(), "-o", out, "--time", end, "--width", 64, "--height", 64)
-            self.assertTrue(out.exists())
+        out = self.folder / "p.png"
+        refused = pirsim("preview", *study_files(), "-o", out, "--time", 99999, code=2).stderr
+        self.assertIn("time: 99999 s isn't in the run", refused)
+        end = re.search(r"lasts from 0 to (\S+) s", refused)[1]
+        self.assertFalse(out.exists())
+        pirsim("preview", *study_files(), "-o", out, "--time", end, "--width", 64, "--height", 64)
+        self.assertTrue(out.exists())
 
     def test_export_writes_thirteen_parts_with_their_primitives(self):
-        with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "run.gltf"
-            pirsim("export", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
-                   DATA / "studies" / "studyA.yaml", "-o", out, "--trial", "S3")
-            gltf = json.loads(out.read_text())
+        out = self.folder / "run.gltf"
+        pirsim("export", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+               DATA / "studies" / "studyA.yaml", "-o", out, "--trial", "S3")
+        gltf = json.loads(out.read_text())
         parts = [n["extras"]["pirsim"] for n in gltf["nodes"]
                  if n.get("extras", {}).get("pirsim", {}).get("type") == "body_part"]
         kinds = sorted(part["primitive"] for part in parts)
@@ -1000,6 +935,4 @@ class Looking(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM = pathlib.Path(sys.argv.pop(1)).resolve()
-    DATA = pathlib.Path(sys.argv.pop(1)).resolve()
-    unittest.main(verbosity=2)
+    main()

@@ -11,17 +11,8 @@ import re
 import resource
 import struct
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
-
-
-def pirsim(*args, code=0, **kwargs):
-    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300, **kwargs)
-    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
-    return result
+from program import DATA, PIRSIM, Case, main, pirsim
 
 
 def study(*args, script="studyA.yaml", **kwargs):
@@ -50,7 +41,7 @@ class Room:
         raise KeyError(kind)
 
     def check(self, folder, code=0, line=True):
-        file = pathlib.Path(folder) / "room.gltf"
+        file = folder / "room.gltf"
         file.write_text(json.dumps(self.gltf, indent=1))
         told = pirsim("check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml", code=code).stderr
         for issue in told.splitlines():
@@ -65,10 +56,9 @@ def turned(rotation):
     return [z, w, -x, -y]
 
 
-class Doubts(unittest.TestCase):
+class Doubts(Case):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
+        super().setUp()
         self.room = Room()
 
     def test_shipped_rooms_and_generated_ones_raise_none(self):
@@ -79,7 +69,7 @@ class Doubts(unittest.TestCase):
             told = pirsim("check", "--scene", file, "--script", DATA / "studies" / script).stderr
             self.assertNotIn("warning: node", told, file.name)
         for seed in range(1, 6):
-            file = f"{self.folder.name}/made.gltf"
+            file = f"{self.folder}/made.gltf"
             pirsim("room", "-o", file, "--seed", seed)
             told = pirsim("run", "--scene", file, "--staff", 1, "--from", "09:00", "--to", "09:01", "--days", 1).stderr
             self.assertNotIn("warning: node", told, seed)
@@ -88,14 +78,14 @@ class Doubts(unittest.TestCase):
         door = self.room.marked("entrance")
         name = door["name"]
         door["rotation"] = turned(door.get("rotation", [0, 0, 0, 1]))
-        told = self.room.check(self.folder.name)
+        told = self.room.check(self.folder)
         self.assertIn(f"warning: node '{name}': entrance", told)
         self.assertIn("is turned round", told)
 
     def test_a_seat_that_faces_away_from_its_table(self):
         seat = self.room.marked("seat", "S1")
         seat["rotation"] = turned(seat.get("rotation", [0, 0, 0, 1]))
-        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file = self.folder / "room.gltf"
         file.write_text(json.dumps(self.room.gltf))
         told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
                               capture_output=True, text=True).stderr
@@ -108,7 +98,7 @@ class Doubts(unittest.TestCase):
         rx, ry, rz, rw = seat.get("rotation", [0, 0, 0, 1])
         ahead = (-2 * (rx * rz + rw * ry), -(1 - 2 * (rx * rx + ry * ry)))  # -Z of the seat, on the floor
         seat["translation"] = [x + 0.5 * ahead[0], y, z + 0.5 * ahead[1]]
-        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file = self.folder / "room.gltf"
         file.write_text(json.dumps(self.room.gltf))
         told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
                               capture_output=True, text=True).stderr
@@ -117,7 +107,7 @@ class Doubts(unittest.TestCase):
     def test_a_desk_a_thousand_times_too_large(self):
         desk = next(n for n in self.room.gltf["nodes"] if "table" in n["name"] and "mesh" in n)
         desk["scale"] = [1000, 1000, 1000]
-        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file = self.folder / "room.gltf"
         file.write_text(json.dumps(self.room.gltf))
         told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
                               capture_output=True, text=True).stderr
@@ -126,17 +116,17 @@ class Doubts(unittest.TestCase):
     def test_a_floor_in_millimetres_and_one_that_stands_upright(self):
         floor = self.room.marked("floor")
         floor["extras"]["pirsim"] = {"type": "floor", "polygon_xz_m": [[0, 0], [8002, 0], [8002, 6002], [0, 6002]]}
-        told = self.room.check(self.folder.name, code=5)
+        told = self.room.check(self.folder, code=5)
         self.assertIn("the floor spans 8002 m x 6002 m: millimetres?", told)
         self.assertRegex(told, r"room\.gltf: error: the floor and its entrances span 80")
         self.assertIn("too large to find ways on (glTF's unit is the metre)", told)
         self.assertNotIn("are they", told)
         floor["extras"]["pirsim"]["polygon_xz_m"] = [[0, 0], [8, 0], [8, 6], [0, 6]]
         floor["rotation"] = [0.70710678, 0, 0, 0.70710678]
-        self.assertIn("stands upright, as in files that are Z-up", self.room.check(self.folder.name, code=3))
+        self.assertIn("stands upright, as in files that are Z-up", self.room.check(self.folder, code=3))
         self.room = Room()
         self.room.marked("seat")["rotation"] = [0.70710678, 0, 0, 0.70710678]
-        self.assertIn("it lies: is the file Z-up?", self.room.check(self.folder.name, code=3))
+        self.assertIn("it lies: is the file Z-up?", self.room.check(self.folder, code=3))
 
     def test_a_seat_outside_works_but_is_told(self):
         """Nobody notices that in the rows: the sitter works there, and `people` is 0."""
@@ -145,17 +135,17 @@ class Doubts(unittest.TestCase):
         behind = (2 * (x * z + w * y), 1 - 2 * (x * x + y * y))  # +Z of the door, on the floor
         place = door["translation"]
         seat["translation"] = [place[0] + 1.2 * behind[0], seat["translation"][1], place[2] + 1.2 * behind[1]]
-        told = self.room.check(self.folder.name)
+        told = self.room.check(self.folder)
         self.assertRegex(told, r"room.gltf:\d+:\d+: warning: node '[^']*': seat 'S1' lies off the floor")
         seat["translation"][0] += 50.0
-        told = self.room.check(self.folder.name, code=5)
+        told = self.room.check(self.folder, code=5)
         self.assertRegex(told, r"error: seat 'S1' of room.gltf can't be reached by '[^']*' from .*: it lies off the floor")
 
     def test_two_seats_at_one_place(self):
         first, second = self.room.marked("seat", "S1"), self.room.marked("seat", "S2")
         second["translation"] = [c + d for c, d in zip(first["translation"], (0.05, 0, 0))]
         second["rotation"] = first.get("rotation", [0, 0, 0, 1])
-        self.assertIn("seat 'S2' is 0.05 m from seat 'S1'", self.room.check(self.folder.name))
+        self.assertIn("seat 'S2' is 0.05 m from seat 'S1'", self.room.check(self.folder))
 
     def test_an_entrance_that_is_not_at_the_edge_of_the_floor(self):
         door = self.room.marked("entrance")
@@ -168,7 +158,7 @@ class Doubts(unittest.TestCase):
                              ((x - 0.5 * ahead[0], y, z - 0.5 * ahead[1]), " outside of it"),
                              ((x - 0.5 * right[0], y, z - 0.5 * right[1]), "' stands in 0.")):
             door["translation"] = list(place)
-            file = pathlib.Path(self.folder.name) / "room.gltf"
+            file = self.folder / "room.gltf"
             file.write_text(json.dumps(self.room.gltf, indent=1))
             told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
                                   capture_output=True, text=True).stderr
@@ -179,14 +169,14 @@ class Doubts(unittest.TestCase):
         x, y, z, w = door.get("rotation", [0, 0, 0, 1])
         right = (1 - 2 * (y * y + z * z), 0, 2 * (x * z - w * y))
         door["translation"] = [c - 1.5 * d for c, d in zip(door["translation"], right)]  # into the wall beside it
-        told = self.room.check(self.folder.name, code=5)
+        told = self.room.check(self.folder, code=5)
         self.assertEqual(told.count("error:"), 1, told)
         self.assertRegex(told, r"room.gltf: error: nobody gets from entrance '[^']*' to the floor")
 
     def test_a_seat_that_nobody_can_sit_on_is_named(self):
         seat = self.room.marked("seat", "S2")
         seat["translation"][1] = 0.0
-        told = self.room.check(self.folder.name, code=5)
+        told = self.room.check(self.folder, code=5)
         self.assertEqual(told.count("error:"), 1, told)
         self.assertIn("error: seat 'S2' of room.gltf: the seat at ", told)
         self.assertRegex(told, r"pelvis point is 0\.00 m above the floor, can't be sat on by a person of 1\.86 m, who can sit "
@@ -250,12 +240,7 @@ class OwnRoom:
         return self
 
 
-class OwnRooms(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class OwnRooms(Case):
     def files(self, room, actions="", rest=""):
         (self.folder / "room.gltf").write_text(json.dumps(room.gltf, indent=1))
         people = f"people:\n  - {{id: p, actions: [{actions}]}}\n" if actions else ""
@@ -582,52 +567,44 @@ class Units(OwnRooms):
         self.assertNotIn("the floor spans", self.told(far, self.WALK))
 
 
-class BareRoom(unittest.TestCase):
+class BareRoom(Case):
     """A floor that is a polygon of the markup, without any mesh."""
 
     SCRIPT = "pirsim_script: 1\npeople: [{id: one, actions: [{enter: door}, {wait_s: 5}, {leave: door}]}]\n"
 
-    def write(self, width):
+    def room(self, width):
         def node(mark, **place):
             return {**place, "extras": {"pirsim": mark}}
         nodes = [node({"type": "floor", "polygon_xz_m": [[0, 0], [width, 0], [width, -3], [0, -3]]}),
                  node({"type": "entrance", "id": "door"}, translation=[1, 0, 0]),
                  node({"type": "sensor", "id": "PIR1", "model": "EKMC1604111"}, translation=[2, 2.5, 0],
                       rotation=[-0.173648, 0, 0, 0.984808])]
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        path = pathlib.Path(folder.name)
-        (path / "study.yaml").write_text(self.SCRIPT)
-        (path / "room.gltf").write_text(json.dumps({"asset": {"version": "2.0"}, "scene": 0, "nodes": nodes,
-                                                    "scenes": [{"nodes": list(range(len(nodes)))}]}))
-        return path
-
-    def files(self, path):
-        return "--scene", path / "room.gltf", "--script", path / "study.yaml"
+        return ("--scene", self.write("room.gltf", json.dumps({"asset": {"version": "2.0"}, "scene": 0, "nodes": nodes,
+                                                               "scenes": [{"nodes": list(range(len(nodes)))}]})),
+                "--script", self.write("study.yaml", self.SCRIPT))
 
     def test_a_room_without_walls_is_told(self):
         told = "no ray of any sensor ends at the room"
-        self.assertIn(told, pirsim("check", *self.files(self.write(4))).stderr)
+        self.assertIn(told, pirsim("check", *self.room(4)).stderr)
         self.assertNotIn(told, pirsim("check", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
                                       DATA / "studies" / "studyA.yaml").stderr)
 
     def test_that_no_ray_ends_at_its_floor_is_told(self):
         told = "no ray ends at the floor: it has no mesh that occludes"
-        self.assertIn(told, pirsim("check", *self.files(self.write(4))).stdout)
+        self.assertIn(told, pirsim("check", *self.room(4)).stdout)
         self.assertNotIn(told, pirsim("check", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
                                       DATA / "studies" / "studyA.yaml").stdout)
 
     def test_its_floor_is_drawn(self):
         pictures = []
         for width in (4, 5):
-            path = self.write(width)
-            pirsim("preview", *self.files(path), "--labels", "none", "--beams", "none", "--time", 0, "--camera", "2,9,-1.5",
-                   "--look-at", "2,0,-1.6", "-q", "-o", path / "room.png")
-            pictures.append((path / "room.png").read_bytes())
+            pirsim("preview", *self.room(width), "--labels", "none", "--beams", "none", "--time", 0, "--camera", "2,9,-1.5",
+                   "--look-at", "2,0,-1.6", "-q", "-o", self.folder / "room.png")
+            pictures.append((self.folder / "room.png").read_bytes())
         self.assertNotEqual(*pictures)
 
 
-class OneMistake(unittest.TestCase):
+class OneMistake(Case):
     """Of a misspelt key or a word for a number only that is told, and not what follows from it."""
 
     def mistakes(self, text):
@@ -640,32 +617,25 @@ class OneMistake(unittest.TestCase):
             yield match[0], text[:match.start()] + "word" + text[match.end():]
 
     def count(self, text, files, name, but=()):
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / name
-            file.parent.mkdir(exist_ok=True)
-            for what, wrong in self.mistakes(text):
-                if what in but:
-                    continue
-                file.write_text(wrong)
-                told = subprocess.run([PIRSIM, "check", "-q", *map(str, files(pathlib.Path(folder)))], capture_output=True,
-                                      text=True, timeout=60).stderr
+        for what, wrong in self.mistakes(text):
+            if what not in but:
+                self.write(name, wrong)
+                told = subprocess.run([PIRSIM, "check", "-q", *map(str, files)], capture_output=True, text=True,
+                                      timeout=60).stderr
                 self.assertEqual(told.count("error:"), 1, f"{what}: {told}")
 
     def test_in_a_script(self):
         room = DATA / "rooms" / "meeting_room.gltf"
         for name in ("studyA", "meeting_day"):  # a variable is told wherever it isn't defined
             self.count((DATA / "studies" / f"{name}.yaml").read_text(),
-                       lambda folder: ("--scene", room, "--script", folder / "s.yaml"), "s.yaml", ("trials", "for_each", "seat"))
+                       ("--scene", room, "--script", self.folder / "s.yaml"), "s.yaml", ("trials", "for_each", "seat"))
 
     def test_in_a_sensor_file(self):
         room = Room()
         for node in room.gltf["nodes"]:
             if marked(node).get("type") == "sensor":
                 marked(node)["model"] = "MINE"
-
-        def files(folder):
-            (folder / "room.gltf").write_text(json.dumps(room.gltf))
-            return "--scene", folder / "room.gltf", "--script", DATA / "studies" / "look.yaml"
+        files = ("--scene", self.write("room.gltf", json.dumps(room.gltf)), "--script", DATA / "studies" / "look.yaml")
         head = "id: MINE\nplane_m: 2\nrange_m: 4\n"
         sources = "".join(f"  {key}: 'assumed: a'\n" for key in ("plane_m", "range_m", "x_m", "y_m", "zone_side_m", "lens_step"))
         self.count(head + "layout: square\nfacets:\n  - {x_m: 1, y_m: 2, zone_side_m: 1, lens_step: 1}\n  - {x_m: 3, y_m: 2, "
@@ -675,11 +645,9 @@ class OneMistake(unittest.TestCase):
                    files, "sensors/MINE.yaml", ("clusters",))
 
 
-class Sensors(unittest.TestCase):
+class Sensors(Case):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.room = Room()
 
     def test_one_that_hangs_outside(self):
@@ -728,7 +696,7 @@ sets:
         self.assertEqual(told.count("error:"), 1, told)
 
 
-class Words(unittest.TestCase):
+class Words(Case):
     """What is asked for and can't be had is told with what there is, in the words that the user typed."""
 
     def test_unknown_names_come_with_the_nearest_or_the_list(self):
@@ -751,11 +719,10 @@ class Words(unittest.TestCase):
         self.assertIn("--set seats=many: error: ", pirsim("room", "--set", "seats=many", "-o", "x.gltf", code=2).stderr)
 
     def test_a_folder_of_shards_is_not_named_as_a_file(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("x.csv", "x.csv.gz", "x.csv.zst"):
-                told = study("--shard", "1/2", "-o", name, code=2, cwd=folder).stderr
-                self.assertIn(f"-o '{name}' is named as a file", told)
-            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+        for name in ("x.csv", "x.csv.gz", "x.csv.zst"):
+            told = study("--shard", "1/2", "-o", name, code=2, cwd=self.folder).stderr
+            self.assertIn(f"-o '{name}' is named as a file", told)
+        self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_days_off_alone_are_told(self):
         day = "run", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--from", "09:00", "--to", "09:01"
@@ -776,13 +743,12 @@ class Words(unittest.TestCase):
         self.assertIn(" PIR1, PIR2, PIR3, PIR4, PIR5", told("seat,time_s,PIR1,temperature\nS1,1,0,20\n"))
 
 
-class Marks(unittest.TestCase):
+class Marks(Case):
     def told(self, change, code=3):
         room = Room()
         node = room.marked("seat", "S1")
         change(room.gltf, node)
-        with tempfile.TemporaryDirectory() as folder:
-            return room.check(folder, code=code)
+        return room.check(self.folder, code=code)
 
     def test_a_mark_of_another_name(self):
         def shout(_, node):
@@ -821,7 +787,7 @@ class Marks(unittest.TestCase):
         self.assertIn("put it on the object's node", told)
 
 
-class Scripts(unittest.TestCase):
+class Scripts(Case):
     def test_unknown_actions_and_effects_get_the_nearest_name_or_the_list(self):
         def told(*args):
             return study(*args, "--print-config", code=3).stderr
@@ -841,18 +807,17 @@ class Scripts(unittest.TestCase):
         self.assertIn("no run has a phase 'meeting'; there are getting_up, lying, ", told("[working, meeting]"))
         self.assertIn("no run has a phase 'working'", told("[working]", "--set", "people.0.actions.3.phase=desk"))
         study("--print-config", "--set", "summary.phases=[desk]", "--set", "people.0.actions.3.phase=desk")
-        with tempfile.TemporaryDirectory() as folder:
-            script = pathlib.Path(folder) / "trials.yaml"
-            person = "people: [{id: a, actions: [{enter: door}, {wait_s: 1%s}, {leave: door}]}]"
-            script.write_text("pirsim_script: 1\nsummary:\n  phases: [%s]\ntrials:\n  - {id: A, " + person % "" + "}\n"
-                              "  - {id: B, " + person % ", phase: reading" + "}\n")
-            lines = script.read_text()
-            for phase, code in (("reading", 0), ("readin", 3)):  # of one trial of two
-                script.write_text(lines % phase)
-                told_of = pirsim("--print-config", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script,
-                                 code=code).stderr
-                self.assertEqual("trials.yaml:3:12: error: summary.phases: no run has a phase 'readin'" in told_of,
-                                 code == 3, told_of)
+        script = self.folder / "trials.yaml"
+        person = "people: [{id: a, actions: [{enter: door}, {wait_s: 1%s}, {leave: door}]}]"
+        script.write_text("pirsim_script: 1\nsummary:\n  phases: [%s]\ntrials:\n  - {id: A, " + person % "" + "}\n"
+                          "  - {id: B, " + person % ", phase: reading" + "}\n")
+        lines = script.read_text()
+        for phase, code in (("reading", 0), ("readin", 3)):  # of one trial of two
+            script.write_text(lines % phase)
+            told_of = pirsim("--print-config", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script,
+                             code=code).stderr
+            self.assertEqual("trials.yaml:3:12: error: summary.phases: no run has a phase 'readin'" in told_of,
+                             code == 3, told_of)
 
     def test_files_at_the_wrong_option_or_command(self):
         scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
@@ -867,18 +832,17 @@ class Scripts(unittest.TestCase):
             self.assertIn(words, told)
 
     def test_names_with_marks_of_markdown_or_html_stay_text_in_the_summary(self):
-        with tempfile.TemporaryDirectory() as folder:
-            script = pathlib.Path(folder) / "trial.yaml"
-            given = study(*ONE_RUN, "--print-config").stdout
-            script.write_text(given.replace("id: S1", 'id: "<b>x|y</b>"', 1))
-            self.assertIn("<b>", script.read_text())
-            pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-q", "--set",
-                   "summary={}", "--summary", f"{folder}/sums.md")
-            text = (pathlib.Path(folder) / "sums.md").read_text()
-            self.assertIn(r"| \<b\>x\|y\</b\> |", text)
+        script = self.folder / "trial.yaml"
+        given = study(*ONE_RUN, "--print-config").stdout
+        script.write_text(given.replace("id: S1", 'id: "<b>x|y</b>"', 1))
+        self.assertIn("<b>", script.read_text())
+        pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-q", "--set",
+               "summary={}", "--summary", f"{self.folder}/sums.md")
+        text = (self.folder / "sums.md").read_text()
+        self.assertIn(r"| \<b\>x\|y\</b\> |", text)
 
 
-class People(unittest.TestCase):
+class People(Case):
     SCRIPT = """pirsim_script: 1
 people:
   - {id: first, actions: [{enter: door}, {sit: S1}, {work: {duration_s: 60}}, {leave: door}]}
@@ -886,50 +850,47 @@ people:
 """
 
     def test_who_waits_outside_for_a_seat_is_counted(self):
-        with tempfile.TemporaryDirectory() as folder:
-            script, rows = pathlib.Path(folder) / "two.yaml", pathlib.Path(folder) / "rows.csv"
-            counted = {}
-            for seat in ("S1", "S2"):
-                script.write_text(self.SCRIPT.replace("{enter: door, at_s: 20}, {sit: S1}",
-                                                      f"{{enter: door, at_s: 20}}, {{sit: {seat}}}"))
-                told = pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", rows).stderr
-                people = json.loads(pathlib.Path(f"{rows}.json").read_text()).get("people", {})
-                counted[seat] = people.get("waits_outside", 0), "waited outside" in told
-            self.assertEqual(counted, {"S1": (1, True), "S2": (0, False)})
+        script, rows = self.folder / "two.yaml", self.folder / "rows.csv"
+        counted = {}
+        for seat in ("S1", "S2"):
+            script.write_text(self.SCRIPT.replace("{enter: door, at_s: 20}, {sit: S1}",
+                                                  f"{{enter: door, at_s: 20}}, {{sit: {seat}}}"))
+            told = pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", rows).stderr
+            people = json.loads(pathlib.Path(f"{rows}.json").read_text()).get("people", {})
+            counted[seat] = people.get("waits_outside", 0), "waited outside" in told
+        self.assertEqual(counted, {"S1": (1, True), "S2": (0, False)})
 
 
-class Streams(unittest.TestCase):
+class Streams(Case):
     def test_scene_and_script_from_standard_input_and_rows_to_standard_output(self):
         scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
         expected = study(*ONE_RUN).stdout
         for given, files in ((script, ("--scene", scene, "--script", "-")), (scene, ("--scene", "-", "--script", script))):
             piped = pirsim(*files, *ONE_RUN, "-o", "-", input=given.read_text()).stdout
             self.assertEqual(piped, expected)
-            with tempfile.TemporaryDirectory() as folder:
-                rows = pathlib.Path(folder) / "rows.csv"
-                pirsim(*files, *ONE_RUN, "-o", rows, input=given.read_text())
-                self.assertEqual(rows.read_text(), expected)
-                direct = pathlib.Path(folder) / "direct.csv"
-                study(*ONE_RUN, "-o", direct)
+            rows = self.folder / "rows.csv"
+            pirsim(*files, *ONE_RUN, "-o", rows, input=given.read_text())
+            self.assertEqual(rows.read_text(), expected)
+            direct = self.folder / "direct.csv"
+            study(*ONE_RUN, "-o", direct)
 
-                def hashes(path):
-                    inputs = json.loads(pathlib.Path(f"{path}.json").read_text())["inputs"]
-                    return sorted(value for entry in inputs for value in
-                                  (entry.values() if isinstance(entry, dict) else [entry]) if len(str(value)) == 64)
-                self.assertEqual(hashes(rows), hashes(direct))
-                self.assertGreater(len(hashes(rows)), 1)
+            def hashes(path):
+                inputs = json.loads(pathlib.Path(f"{path}.json").read_text())["inputs"]
+                return sorted(value for entry in inputs for value in
+                              (entry.values() if isinstance(entry, dict) else [entry]) if len(str(value)) == 64)
+            self.assertEqual(hashes(rows), hashes(direct))
+            self.assertGreater(len(hashes(rows)), 1)
             with open(given, encoding="utf-8") as stream:
                 self.assertEqual(pirsim(*files, *ONE_RUN, stdin=stream).stdout, expected)
 
     def test_a_binary_scene_from_standard_input(self):
-        with tempfile.TemporaryDirectory() as folder:
-            room = pathlib.Path(folder) / "room.glb"
-            pirsim("room", "-o", room, "--seed", 2)
-            day = "--staff", 1, "--days", 1, "--from", "09:00", "--to", "09:01", "-q"
-            piped = subprocess.run([PIRSIM, "run", "--scene", "-", *map(str, day)], input=room.read_bytes(),
-                                   capture_output=True)
-            self.assertEqual(piped.returncode, 0, piped.stderr)
-            self.assertEqual(piped.stdout.decode(), pirsim("run", "--scene", room, *day).stdout)
+        room = self.folder / "room.glb"
+        pirsim("room", "-o", room, "--seed", 2)
+        day = "--staff", 1, "--days", 1, "--from", "09:00", "--to", "09:01", "-q"
+        piped = subprocess.run([PIRSIM, "run", "--scene", "-", *map(str, day)], input=room.read_bytes(),
+                               capture_output=True)
+        self.assertEqual(piped.returncode, 0, piped.stderr)
+        self.assertEqual(piped.stdout.decode(), pirsim("run", "--scene", room, *day).stdout)
 
     def test_measured_rows_from_standard_input(self):
         """A faulty line tells that they were read; an analysis would take minutes."""
@@ -943,42 +904,39 @@ class Streams(unittest.TestCase):
         self.assertIn("can't both be standard input", pirsim("--scene", "-", "--script", "-", code=2, input="").stderr)
 
 
-class Outputs(unittest.TestCase):
+class Outputs(Case):
     def test_surveys_say_where_they_write(self):
-        with tempfile.TemporaryDirectory() as folder:
-            scene = "--scene", DATA / "rooms" / "meeting_room.gltf"
-            told = pirsim("coverage", *scene, "--script", DATA / "studies" / "studyB.yaml", "--set", "spacing_m=1",
-                          cwd=folder).stderr
-            self.assertIn("wrote coverage/coverage.csv", told)
-            told = pirsim("walktest", *scene, "--script", DATA / "studies" / "walk_test.yaml", "--set", "spacing_m=2",
-                          cwd=folder).stderr
-            self.assertIn("wrote walk_test.csv", told)
-            self.assertTrue((pathlib.Path(folder) / "walk_test.csv").exists())
+        scene = "--scene", DATA / "rooms" / "meeting_room.gltf"
+        told = pirsim("coverage", *scene, "--script", DATA / "studies" / "studyB.yaml", "--set", "spacing_m=1",
+                      cwd=self.folder).stderr
+        self.assertIn("wrote coverage/coverage.csv", told)
+        told = pirsim("walktest", *scene, "--script", DATA / "studies" / "walk_test.yaml", "--set", "spacing_m=2",
+                      cwd=self.folder).stderr
+        self.assertIn("wrote walk_test.csv", told)
+        self.assertTrue((self.folder / "walk_test.csv").exists())
         self.assertIn("(default: coverage)", pirsim("coverage", "--help").stdout)
         self.assertIn("(default: walk_test.csv)", pirsim("walktest", "--help").stdout)
 
     def test_a_report_speaks_of_shaded_windows_where_there_are_any(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for change, shaded in (((), True), (("--set", "summary.phases=[]"), False)):
-                page = pathlib.Path(folder) / "page.html"
-                study(*ONE_RUN, *change, "-o", f"{folder}/rows.csv", "--report", page)
-                self.assertEqual("counted windows are shaded" in page.read_text(), shaded)
+        for change, shaded in (((), True), (("--set", "summary.phases=[]"), False)):
+            page = self.folder / "page.html"
+            study(*ONE_RUN, *change, "-o", f"{self.folder}/rows.csv", "--report", page)
+            self.assertEqual("counted windows are shaded" in page.read_text(), shaded)
 
     def test_zones_tell_early_how_much_they_will_write(self):
-        with tempfile.TemporaryDirectory() as folder:
-            zones = pathlib.Path(folder) / "zones.csv"
-            once = "--set", "trials.for_each.seat=[S1]", "--zones", zones, "-o", f"{folder}/rows.csv"
-            self.assertNotIn("GB", study(*once, "--replicates", 1).stderr)
-            a_run = zones.stat().st_size
-            n = 1 + 2 * 10**8 // a_run
-            process = subprocess.Popen([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
-                                        DATA / "studies" / "studyA.yaml", *map(str, once), "--replicates", str(n)],
-                                       stderr=subprocess.PIPE, text=True)
-            line = next(line for line in process.stderr if "--zones" in line)
-            process.kill()
-            process.communicate()
-            self.assertIn(f"the first of {n} runs", line)
-            self.assertIn("about 0.2", line)
+        zones = self.folder / "zones.csv"
+        once = "--set", "trials.for_each.seat=[S1]", "--zones", zones, "-o", f"{self.folder}/rows.csv"
+        self.assertNotIn("GB", study(*once, "--replicates", 1).stderr)
+        a_run = zones.stat().st_size
+        n = 1 + 2 * 10**8 // a_run
+        process = subprocess.Popen([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                                    DATA / "studies" / "studyA.yaml", *map(str, once), "--replicates", str(n)],
+                                   stderr=subprocess.PIPE, text=True)
+        line = next(line for line in process.stderr if "--zones" in line)
+        process.kill()
+        process.communicate()
+        self.assertIn(f"the first of {n} runs", line)
+        self.assertIn("about 0.2", line)
 
     def test_a_stack_of_64_kilobytes_is_enough(self):
         def small_stack():
@@ -987,6 +945,4 @@ class Outputs(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM = pathlib.Path(sys.argv.pop(1)).resolve()
-    DATA = pathlib.Path(sys.argv.pop(1)).resolve()
-    unittest.main(verbosity=2)
+    main()

@@ -6,21 +6,16 @@ Usage: run_hostile.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
 import json
 import os
-import pathlib
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main
+
 MOST_BYTES = 1_500_000_000
 
 
-class Hostile(unittest.TestCase):
+class Hostile(Case):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+        super().setUp()
         self.scene = DATA / "rooms" / "meeting_room.gltf"
         self.script = DATA / "studies" / "studyA.yaml"
 
@@ -333,6 +328,4 @@ class Hostile(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM = pathlib.Path(sys.argv.pop(1)).resolve()
-    DATA = pathlib.Path(sys.argv.pop(1)).resolve()
-    unittest.main(verbosity=2)
+    main()

@@ -13,12 +13,10 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main
+
 SCRIPT = """pirsim_script: 1
 name: a minute
 people: [{id: a, actions: [{enter: door}, {sit: S6}, {work: {duration_s: 40}}]}]
@@ -60,21 +58,13 @@ def sha256(data):
     return hashlib.sha256(data).hexdigest()
 
 
-class Case(unittest.TestCase):
+class InputsCase(Case):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+        super().setUp()
         self.scene = self.folder / "room.gltf"
         run("room", "--kind", "meeting", "--width", 6, "--depth", 4.6, "--seats", 6, "-o", self.scene, "-q")
         self.script = self.write("study.yaml", SCRIPT)
         self.model = re.search(r'"model": *"(\w+)"', self.scene.read_text().replace("\\", ""))[1] + ".yaml"
-
-    def write(self, name, content):
-        path = self.folder / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-        return path
 
     def study(self, *args, **options):
         return run("--scene", self.scene, "--script", self.script, *args, **options)
@@ -94,7 +84,7 @@ class Case(unittest.TestCase):
                    "--holdout", "NOBODY", "-o", self.folder / "found", *args, code=code, **options)[1]
 
 
-class ReadOnce(Case):
+class ReadOnce(InputsCase):
     def test_pipes_and_standard_input_are_recorded_by_their_bytes(self):
         expected = self.study("-q")[0]
         hashes = [sha256(self.script.read_bytes()), sha256(self.scene.read_bytes())]
@@ -212,7 +202,7 @@ class ReadOnce(Case):
             self.assertIn("/proc/self/mem: error: can't be read: ", run(*args, code=4)[1])
 
 
-class Characters(Case):
+class Characters(InputsCase):
     def test_what_is_not_utf8_is_refused_when_it_is_read(self):
         bad = b"pirsim_script: 1\nname: \"caf\xe9\"\n"
         place = "2:11: error: not UTF-8: byte 0xE9"
@@ -273,7 +263,7 @@ class Characters(Case):
                 if node.get("extras", {}).get("pirsim", {}).get("type") == "sensor"]
 
 
-class Measured(Case):
+class Measured(InputsCase):
     def rows(self, seconds=60):
         rows = self.study("-q")[0].decode().splitlines()
         return rows[:1] + rows[1:seconds + 1]
@@ -341,7 +331,7 @@ class Measured(Case):
             self.assertLess(time.monotonic() - began, 15)
 
 
-class Messages(Case):
+class Messages(InputsCase):
     def test_long_names_are_shortened_wherever_they_are_quoted(self):
         long = "n" * 5_000_000
         def rename(scene):
@@ -431,5 +421,4 @@ class Messages(Case):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

@@ -16,12 +16,10 @@ import re
 import shutil
 import sqlite3
 import subprocess
-import sys
-import tempfile
-import unittest
 import zoneinfo
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main, run
+
 UTC = datetime.timezone.utc
 
 WIDE = "time,A,B\n2025-04-06T18:00:01,0,0\n2025-04-06T18:00:02,1,\n2025-04-06T18:00:03,1,1\n2025-04-06T18:00:04,0,1\n"
@@ -29,23 +27,7 @@ ROWS = ("time_s,time,A,B\n1,2025-04-06T18:00:01,0,0\n2,2025-04-06T18:00:02,1,\n3
         "4,2025-04-06T18:00:04,0,1\n")
 
 
-def run(*args, code=0, **kwargs):
-    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, timeout=300, **kwargs)
-    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr.decode()}"
-    return result.stdout.decode(), result.stderr.decode()
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
-
-    def write(self, name, content):
-        path = self.folder / name
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return path
-
+class LogCase(Case):
     def rows(self, *args, **kwargs):
         """Of the log, as text."""
         out = self.folder / "rows.csv"
@@ -53,15 +35,15 @@ class Case(unittest.TestCase):
         return out.read_text()
 
 
-class Inputs(Case):
+class Inputs(LogCase):
     def test_encodings_and_compression(self):
-        for encoded in (WIDE.encode(), b"\xef\xbb\xbf" + WIDE.encode(), WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
+        for encoded in (WIDE, b"\xef\xbb\xbf" + WIDE, WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
                         WIDE.encode("utf-16-be"), "\ufeff".encode("utf-16-be") + WIDE.encode("utf-16-be"),
-                        WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE.encode())):
+                        WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE)):
             self.assertEqual(self.rows(self.write("log", encoded), "--step", 1), ROWS)
 
     def test_standard_input_and_pipes(self):
-        self.assertEqual(self.rows("-", "--step", 1, input=WIDE.encode()), ROWS)
+        self.assertEqual(self.rows("-", "--step", 1, input=WIDE), ROWS)
         pipe = self.folder / "pipe"
         os.mkfifo(pipe)
         with subprocess.Popen(["sh", "-c", f"cat '{self.write('log', WIDE)}' > '{pipe}'"]):
@@ -69,13 +51,13 @@ class Inputs(Case):
         with open(self.write("log", WIDE), "rb") as redirected:  # where it stands, and not from its begin
             self.assertEqual(self.rows("-", "--step", 1, stdin=redirected), ROWS)
         costs = self.folder / "costs.csv"
-        run("control", "--log", "-", "--delay", 1, "-q", "-o", costs, input=WIDE.encode())
+        run("control", "--log", "-", "--delay", 1, "-q", "-o", costs, input=WIDE)
         through = costs.read_text()
         run("control", "--log", self.write("log", WIDE), "--delay", 1, "-q", "-o", costs)
         self.assertEqual(costs.read_text(), through)
-        self.assertIn("standard input can be read once", run("log", "-", "-", input=WIDE.encode(), code=2)[1])
-        self.assertIn("can't both be standard input", run("log", "-", "--map", "-", input=WIDE.encode(), code=2)[1])
-        self.assertIn("the log is empty", run("log", "-", input=b"", code=3)[1])
+        self.assertIn("standard input can be read once", run("log", "-", "-", input=WIDE, code=2)[1])
+        self.assertIn("can't both be standard input", run("log", "-", "--map", "-", input=WIDE, code=2)[1])
+        self.assertIn("the log is empty", run("log", "-", input="", code=3)[1])
 
     def test_the_map_that_is_printed_reads_the_log_again(self):
         log = self.write("log.csv", WIDE.replace("time,A,B", '"when, exactly",S\\1,"S ""2"""'))
@@ -111,7 +93,7 @@ class Inputs(Case):
         self.assertIn("another run begins here", run("log", rows, code=3)[1])
 
 
-class Time(Case):
+class Time(LogCase):
     def test_summer_time_is_as_python_s_zoneinfo_has_it(self):
         draw = random.Random(5)
         for name, days in (("Europe/Berlin", ("2025-03-29", "2025-10-25")), ("America/New_York", ("2024-03-09", "2024-11-02")),
@@ -189,7 +171,7 @@ REFUSED = {
     "an invisible sensor": (b"time,sensor,state\n1,A\x1b,on\n2,A\x1b,off\n", "U+001B"),
     "an endless line": (b"time,A\n" + b"1" * 3_000_000, "log:2:1: error: a line longer than 1 MB"),
     "many columns": (b"time" + b",".join(b"c%d" % i for i in range(20_000)) + b"\n1\n", "more than 10000 fields"),
-    "damaged gzip": (gzip.compress(WIDE.encode())[:-12], "is cut short"),
+    "damaged gzip": (gzip.compress(WIDE)[:-12], "is cut short"),
 }
 
 # What is read, and told: content, rows of windows of 1 s, remarks.
@@ -216,7 +198,7 @@ HOME_ROWS = {"hall": "0011100001.", "desk": "...00011..."}
 START = datetime.datetime(2026, 3, 2, 7, tzinfo=UTC)
 
 
-class Database(Case):
+class Database(LogCase):
     def make(self, version, old=lambda second: False, name="home-assistant_v2.db", runs=()):
         """A database of that schema; `old(second)`: rows that weren't brought to it yet."""
         path = self.folder / name
@@ -303,7 +285,8 @@ class Database(Case):
     def test_other_databases_and_other_ways(self):
         path, base = self.make(48)
         base.close()
-        self.assertIn("got a database (SQLite)", run("log", "-", input=path.read_bytes(), code=3)[1])
+        with open(path) as stream:
+            self.assertIn("got a database (SQLite)", run("log", "-", stdin=stream, code=3)[1])
         other = sqlite3.connect(self.folder / "other.sqlite")
         other.execute("CREATE TABLE frames (x REAL)")
         other.commit()
@@ -316,7 +299,7 @@ class Database(Case):
         self.assertIn("can't be read", run("log", self.folder / "cut.db", code=4)[1])
 
 
-class Odd(Case):
+class Odd(LogCase):
     def test_what_can_t_be_read_is_refused_by_name_and_line(self):
         for kind, (content, told) in REFUSED.items():
             log = self.write("log", content)
@@ -350,7 +333,7 @@ class Odd(Case):
                          ROWS.splitlines()[0] + "\n1,2025-04-06T18:00:02,1,\n2,2025-04-06T18:00:03,1,1\n")
 
 
-class Long(Case):
+class Long(LogCase):
     def test_a_million_events_in_little_memory_and_time(self):
         def events(sensor):
             draw, at = random.Random(sensor), datetime.datetime(2024, 1, 1)
@@ -375,5 +358,4 @@ class Long(Case):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = sys.argv[1], pathlib.Path(sys.argv[2])
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

@@ -6,26 +6,21 @@ Usage: run_long_work.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only
 """
 import json
 import os
-import pathlib
 import pty
 import re
 import select
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main
+
 LEFT = r"\d+ (s|min|h \d+ min) left"
 
 
-class LongWork(unittest.TestCase):
+class LongWork(Case):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+        super().setUp()
         self.room = ["--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml"]
         self.office = ["--scene", DATA / "rooms" / "open_office.gltf", "--script", DATA / "studies" / "office_week.yaml"]
 
@@ -147,5 +142,4 @@ class LongWork(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
+    main()

@@ -9,14 +9,9 @@ import json
 import pathlib
 import re
 import struct
-import subprocess
-import sys
-import tempfile
-import unittest
 
 from box_scene import CORNERS, SIDES
-
-PIRSIM = DATA = None
+from program import Case, main, run
 
 # 8 m x 6 m: a room of 5 m, and two behind gaps of 0.9 m and 0.8 m; a door of 1 m leads in from the left.
 FLAT = [("Slab", (-0.2, -0.2, -0.2), (8.2, 0, 6.2)), ("Ceiling", (-0.2, 2.5, -0.2), (8.2, 2.7, 6.2)),
@@ -52,26 +47,17 @@ def model(boxes, unit=1.0):
                      base64.b64encode(points + sides).decode()}]})
 
 
-class Case(unittest.TestCase):
+class MarksCase(Case):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
+        super().setUp()
         self.flat = self.write("flat.gltf", model(FLAT))
         self.walk = self.write("walk.yaml", WALK)
 
-    def write(self, name, content):
-        path = self.folder / name
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        return path
-
-    def run_pirsim(self, *args, code=0, data=None):
-        done = subprocess.run([PIRSIM, *map(str, args)], input=data, capture_output=True, timeout=120, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr.decode()[:2000])
-        return done.stdout.decode(), done.stderr.decode()
+    def run_pirsim(self, *args, **options):
+        return run(*args, cwd=self.folder, **options)
 
 
-class Marks(Case):
+class Marks(MarksCase):
     def test_a_run_has_the_marks_among_its_inputs_from_a_file_or_a_pipe(self):
         marks = self.write("marks.yaml", MARKS)
         scene = ("--scene", self.flat, "--script", self.walk, "-q")
@@ -81,8 +67,8 @@ class Marks(Case):
         self.assertEqual(inputs["marks.yaml"], hashlib.sha256(MARKS.encode()).hexdigest())
         rows = (self.folder / "rows.csv").read_text()
         self.assertGreater(sum(int(line.split(",")[-1]) for line in rows.splitlines()[1:]), 3)
-        for text in (MARKS.encode(), b"\xef\xbb\xbf" + MARKS.encode()):  # with a byte order mark, too
-            self.assertEqual(self.run_pirsim(*scene, "--marks", "-", data=text)[0], rows)
+        for text in (MARKS, "\ufeff" + MARKS):  # with a byte order mark, too
+            self.assertEqual(self.run_pirsim(*scene, "--marks", "-", input=text)[0], rows)
         # Other marks are another study: nothing is resumed.
         marks.write_text(MARKS.replace("yaw_deg: 45", "yaw_deg: 40"))
         self.run_pirsim(*scene, "--marks", marks, "-o", "rows.csv", "--resume", code=3)
@@ -128,7 +114,7 @@ class Marks(Case):
         self.assertIn("--labels seats,doors", told)
 
 
-class Suggestions(Case):
+class Suggestions(MarksCase):
     def suggest(self, scene, *args, code=0):
         return self.run_pirsim("check", "--scene", scene, "--suggest", *args, code=code)
 
@@ -175,5 +161,4 @@ class Suggestions(Case):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
+    main()

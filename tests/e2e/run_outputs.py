@@ -10,11 +10,9 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main
+
 BYTES = b"what a user wrote\n"
 # What a command writes into its folder, of each option; test_folders_get_what_is_listed_here says whether it's true where it
 # tries, run_own_room.py of calibrate.
@@ -95,7 +93,7 @@ def options(command):
     return found
 
 
-class Declared(unittest.TestCase):
+class Declared(Case):
     def test_every_option_that_names_a_file_is_declared_as_input_or_output(self):
         all_options = [option for command in commands() for option in options(command)]
         self.assertGreater(len(all_options), 200)
@@ -109,12 +107,7 @@ class Declared(unittest.TestCase):
                 self.assertIn(where, CONTENTS)
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
-
+class OutputsCase(Case):
     def refused(self, *args, code=2, told="one file|one folder|one of the files of|is read as an input"):
         before = self.contents()
         done = pirsim(*args, cwd=self.folder)
@@ -131,7 +124,7 @@ class Case(unittest.TestCase):
         return name
 
 
-class Refused(Case):
+class Refused(OutputsCase):
     def places(self, command, output):
         """(words, file) of each file that the output writes."""
         if output.takes == "FILE":
@@ -232,37 +225,34 @@ class Refused(Case):
         self.assertEqual(done.returncode, 0, done.stderr)  # the shipped room is no file here
 
 
-class Places(unittest.TestCase):
+class Places(Case):
     def test_files_where_folders_are_wanted_and_folders_where_files_are(self):
-        with tempfile.TemporaryDirectory() as folder:
-            folder = pathlib.Path(folder)
-            for name in ("", ".csv", ".html", ".gltf", ".png", ".yaml", ".txt"):
-                (folder / f"is_folder{name}").mkdir()
-            (folder / "file").write_bytes(BYTES)
-            for command in commands():
-                for output in (option for option in options(command) if option.group == "Outputs"):
-                    file = f"is_folder{ending_of(command, output)}"
-                    for value in (file,) if output.takes == "FILE" else ("file", "file/below"):
-                        done = pirsim(*command, *needed(command, output), *output.words(value), cwd=folder)
-                        self.assertEqual(done.returncode, 4, (command, output.name, done.stderr))
-                        self.assertIn("can't write: ", done.stderr)
-            self.assertEqual((folder / "file").read_bytes(), BYTES)
+        for name in ("", ".csv", ".html", ".gltf", ".png", ".yaml", ".txt"):
+            (self.folder / f"is_folder{name}").mkdir()
+        (self.folder / "file").write_bytes(BYTES)
+        for command in commands():
+            for output in (option for option in options(command) if option.group == "Outputs"):
+                file = f"is_folder{ending_of(command, output)}"
+                for value in (file,) if output.takes == "FILE" else ("file", "file/below"):
+                    done = pirsim(*command, *needed(command, output), *output.words(value), cwd=self.folder)
+                    self.assertEqual(done.returncode, 4, (command, output.name, done.stderr))
+                    self.assertIn("can't write: ", done.stderr)
+        self.assertEqual((self.folder / "file").read_bytes(), BYTES)
 
     def test_links_to_nothing_and_a_data_folder_that_is_not_there(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in ("meeting_room.gltf", "studyA.yaml"):
-                (pathlib.Path(folder) / name).symlink_to("nowhere")
-                done = pirsim("check", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", cwd=folder)
-                self.assertEqual(done.returncode, 4)
-                self.assertIn(f"{name}: error: is a link to a file that isn't there", done.stderr)
-                os.remove(pathlib.Path(folder) / name)
-            done = subprocess.run([PIRSIM, "check", "--scene", "meeting_room.gltf"], capture_output=True, text=True,
-                                  cwd=folder, env={**os.environ, "PIRSIM_DATA_DIR": "nowhere"})
+        for name in ("meeting_room.gltf", "studyA.yaml"):
+            (self.folder / name).symlink_to("nowhere")
+            done = pirsim("check", "--scene", "meeting_room.gltf", "--script", "studyA.yaml", cwd=self.folder)
             self.assertEqual(done.returncode, 4)
-            self.assertIn("nowhere: error: PIRSIM_DATA_DIR: there is no such folder", done.stderr)
+            self.assertIn(f"{name}: error: is a link to a file that isn't there", done.stderr)
+            os.remove(self.folder / name)
+        done = subprocess.run([PIRSIM, "check", "--scene", "meeting_room.gltf"], capture_output=True, text=True,
+                              cwd=self.folder, env={**os.environ, "PIRSIM_DATA_DIR": "nowhere"})
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("nowhere: error: PIRSIM_DATA_DIR: there is no such folder", done.stderr)
 
 
-class Contents(Case):
+class Contents(OutputsCase):
     """Whatever a command really puts into a folder is kept if it is an input of the next call."""
 
     def test_folders_get_what_is_listed_here(self):
@@ -286,5 +276,4 @@ class Contents(Case):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

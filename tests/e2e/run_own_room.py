@@ -8,21 +8,13 @@ import csv
 import datetime
 import functools
 import json
-import pathlib
 import shutil
 import subprocess
-import sys
-import tempfile
 import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, made_folder, main, run
+
 MADE = ("weights.csv", "counter.json", "calibration.json", "calibration.html", "recipe.yaml")
-
-
-def run(*args, code=0):
-    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=600)
-    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
-    return result.stdout, result.stderr
 
 
 def table(path):
@@ -34,9 +26,7 @@ class OwnRoom(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
+        cls.folder = made_folder(cls.addClassCleanup)
         small = (DATA / "recipes" / "own_room_small.yaml").read_text()
         for shipped, quicker in (("count: 12", "count: 10"), ("09:30", "09:00"), ("rate_hz: 10}", "rate_hz: 10, response: zones}")):
             assert shipped in small, shipped
@@ -263,5 +253,4 @@ class OwnRoom(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = sys.argv[1], pathlib.Path(sys.argv[2])
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

@@ -7,14 +7,11 @@ Usage: run_rows.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 import csv
 import gzip
 import os
-import pathlib
 import re
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main
+
 HEADER = "replicate,trial,time_s,time,phase,people,PIR1,PIR2"
 
 
@@ -77,12 +74,7 @@ FAULTY = {
 }
 
 
-class Case(unittest.TestCase):
-    def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = pathlib.Path(holder.name)
-
+class RowsCase(Case):
     def write(self, name, header, lines):
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -114,7 +106,7 @@ class Case(unittest.TestCase):
     COMMANDS = ("control", "reconcile")
 
 
-class Agreement(Case):
+class Agreement(RowsCase):
     def test_every_command_counts_the_rows_that_are_known(self):
         for name, (header, lines, known) in WHOLE.items():
             for command in self.COMMANDS:
@@ -149,7 +141,7 @@ class Agreement(Case):
                 self.assertEqual(getattr(self, command)("-", input=text), 20)
 
 
-class Runs(Case):
+class Runs(RowsCase):
     def test_rows_of_a_log_are_rows(self):
         times = [f"2026-03-02T23:{minute}:00" for minute in range(50, 60)]
         times += [f"2026-03-03T00:{minute:02}:00" for minute in range(10)]
@@ -222,7 +214,7 @@ class Runs(Case):
         self.assertEqual(costs["days"], "8")
 
 
-class Occupancy(Case):
+class Occupancy(RowsCase):
     """Tables of people by moment are of one run, and comments end before their header."""
 
     def played(self, text):
@@ -245,5 +237,4 @@ class Occupancy(Case):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    main()

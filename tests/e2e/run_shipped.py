@@ -7,11 +7,9 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
-import tempfile
-import unittest
 
-PIRSIM = DATA = None
+from program import DATA, PIRSIM, Case, main, run
+
 KINDS = {"rooms": ".gltf", "studies": ".yaml", "recipes": ".yaml", "sensors": ".yaml", "measured": ".csv"}
 SHORT = "--replicates", "1", "--set", "trials.for_each.seat=[S8]", "-q"
 
@@ -35,12 +33,7 @@ def names_of(listing):
     return names
 
 
-class Shipped(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
+class Shipped(Case):
     def test_the_list_is_that_of_the_folders(self):
         there = {kind: {file.name for file in (DATA / kind).iterdir() if file.suffix == ending and
                         file.name != "ekmc1604111_zones.csv"} for kind, ending in KINDS.items()}
@@ -180,5 +173,4 @@ class Shipped(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PIRSIM, DATA = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
-    unittest.main(argv=["run_shipped.py", *sys.argv[3:]], verbosity=2)
+    main()

@@ -4,6 +4,7 @@
 
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace pirsim;
 using namespace pirsim::studies;
@@ -35,6 +36,19 @@ std::string fault(std::string_view text, const Environment& variables) {
     CHECK(error.code() == ErrorCode::usage);
     return error.what();
   }
+}
+
+/// A finished shard of two, with the rows of one run.
+void write_shard(const TemporaryFolder& folder, std::uint32_t index, const std::string& header,
+                 const std::string& rows) {
+  const Shard shard{index, 2};
+  io::Manifest made;
+  made.provenance.study_runs = shard.count;
+  made.shard = shard;
+  made.runs = runs_of(shard, shard.count);
+  io::RowFile file(folder.path() / (shard_name(shard) + ".csv"), made, header, io::RowFile::Start::anew);
+  file.add_run(rows, 1);
+  file.commit();
 }
 
 }  // namespace
@@ -107,4 +121,17 @@ TEST_CASE("a shard's name is read back and no other name is", "[shards]") {
                            "shard-0000-of-0100.csv", "all.csv", "shard-0003", "shard-0003-of-01x0.csv", ""}) {
     CHECK_FALSE(shard_of(name));
   }
+}
+
+TEST_CASE("shards are merged under one header, and not where another column is as long", "[shards]") {
+  const TemporaryFolder folder;
+  const std::filesystem::path merged = folder.path() / "all.csv";
+  write_shard(folder, 1, "trial,PIR1\n", "S1,0\n");
+  write_shard(folder, 2, "trial,PIR1\n", "S2,1\n");
+  CHECK(merge_campaign(folder.path(), merged).rows == 2);
+  CHECK(content(merged) == "trial,PIR1\nS1,0\nS2,1\n");
+
+  write_shard(folder, 2, "trial,PIR2\n", "S2,1\n");
+  CHECK_THROWS_WITH(merge_campaign(folder.path(), merged), contains("its columns are not those of the first shard"));
+  CHECK(content(merged) == "trial,PIR1\nS1,0\nS2,1\n");
 }

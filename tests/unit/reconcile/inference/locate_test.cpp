@@ -1,7 +1,12 @@
-// Which cells differ by themselves.
+// Features of statistics, and which cells differ by themselves.
 #include "reconcile/inference/locate.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "pirsim/random.hpp"
+#include "reconcile/inference/feature_map.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -29,4 +34,24 @@ TEST_CASE("a cell is framed in which the data move and no simulated dataset does
   };
   for (const float seconds : {1.0F, 3.0F, 30.0F}) CHECK(p_of_silent(seconds) <= 1.0 / 1500.0);
   CHECK(p_of_silent(0.0F) > 0.05);
+}
+
+TEST_CASE("features are finite and keep their places where some simulated datasets lack a trial", "[reconcile]") {
+  const StudyFrame frame{{"S1", "S2"}, {"A", "B"}, {"standing"}, 1.0};
+  stats::Matrix<float> plain(20, n_statistics(frame));
+  Stream stream({2, 0, 0, Purpose::test});
+  for (std::size_t row = 0; row < plain.rows(); ++row) {
+    for (float& value : plain.row(row)) value = static_cast<float>(stream.uniform());
+  }
+  const FeatureMap all(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, {0, 1});
+  const auto lose_second_trial = [&](std::size_t row) {  // nobody stood in it
+    std::ranges::fill(Statistics(frame, plain.row(row)).cells(1), std::nanf(""));
+  };
+  for (const std::size_t row : {0, 7, 8}) lose_second_trial(row);
+  const FeatureMap some(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, {0, 1});
+  CHECK(some.names() == all.names());
+  for (std::size_t row = 0; row < plain.rows(); ++row) {
+    CAPTURE(row);
+    CHECK(std::ranges::all_of(some.features(plain.row(row)), [](float value) { return std::isfinite(value); }));
+  }
 }
