@@ -112,16 +112,19 @@ template <typename Value, typename Enum, typename Spec, typename Given, typename
   }
   return words;
 }
-/// Reads a list of words, or a lone one, if it is there; an empty list is a fault.
+/// Reads a list of words, or a lone one, if it is there; an empty list is a fault where it isn't the default.
 template <typename Enum, typename Spec, typename Range>
 void read_words(YamlMap& map, std::vector<Enum>& value, const Field<Spec, std::vector<Enum>, Range>& field) {
   const std::optional<YamlNode> node = map.child(field.name);
   if (!node) return;
-  value.clear();
   std::vector<std::string> words;
   const auto known = words_of<Enum, Enum>(field);
   for (const auto& [word, meant] : known) words.push_back(word);
-  for (const YamlNode& item : node->is_scalar() ? std::vector{*node} : map.required_list(field.name)) {
+  const std::vector<YamlNode> items = node->is_scalar() ? std::vector{*node}
+                                      : value.empty()   ? map.list(field.name)
+                                                        : map.required_list(field.name);
+  value.clear();
+  for (const YamlNode& item : items) {
     const auto at = item.choice(map.faults(), map.label(field.name), words);
     if (!at) continue;
     if (std::ranges::find(value, known[*at].second) != value.end())
