@@ -116,7 +116,7 @@ std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_senso
   return all;
 }
 
-/// All faults at once.
+/// Tells all faults at once.
 void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
   // Without counted phases there is no part that rows could be taken for, but a sum can still be too large.
   const bool counts_all = frame.counted_phases.empty();

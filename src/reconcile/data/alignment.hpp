@@ -31,7 +31,7 @@ struct JointSilence {
   /// How much oftener it happens than by chance, as a logarithm; 0 where nothing can be joint, as with one sensor.
   [[nodiscard]] double log_ratio() const;
 };
-/// Of the main parts of a dataset's runs.
+/// Looks at the main parts of a dataset's runs.
 [[nodiscard]] JointSilence joint_silence(std::span<const Series> runs, std::size_t n_sensors);
 
 // Measured and simulated data side by side: what there is of a dataset, so that both are looked at alike.

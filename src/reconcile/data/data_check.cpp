@@ -65,7 +65,7 @@ double greatest_of(std::span<const DatasetRows> pilot, const std::function<doubl
   return greatest;
 }
 
-/// A dataset a realization: its trials ascend.
+/// Each realization is a dataset, in which trials ascend.
 std::vector<DatasetRows> datasets_of(std::span<const Series> pilot, std::size_t n_sensors) {
   std::vector<DatasetRows> datasets;
   for (std::size_t begin = 0, end = 0; begin < pilot.size(); begin = end) {

@@ -44,7 +44,7 @@ std::vector<std::string> fields_of(std::string_view line) {
   return fields;
 }
 
-/// Of the log's own time, at which a run begins.
+/// The log's moment at which a run begins.
 std::int64_t moment_of(const Log& log, std::int64_t local_s) {
   constexpr std::int64_t us = 1'000'000;
   for (const LogOffset& offset : log.offsets) {
@@ -74,7 +74,7 @@ struct SensorColumns {
   std::vector<std::optional<std::size_t>> columns;  ///< (n_sensors)
   std::vector<std::string> absent;
 
-  /// If any is absent.
+  /// Adds a note if any is absent.
   void tell(std::vector<std::string>& notes) const {
     if (!absent.empty()) notes.push_back("The file has no column for " + joined(absent, ", ") + left_out);
   }
@@ -574,7 +574,7 @@ class MeasuredReader {
                 "too little data: " + counted(known, "row") + " to compare, needed are " + std::to_string(fewest_rows));
   }
 
-  /// What was done with the rows.
+  /// Notes what was done with the rows.
   void tell_rows() {
     const std::string phases = joined(frame_.counted_phases, ", ");
     const auto tell = [&](std::size_t n, const std::string& text) {

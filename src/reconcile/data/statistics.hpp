@@ -89,7 +89,7 @@ inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(Trial
 [[nodiscard]] inline std::size_t n_pairs(const StudyFrame& frame) noexcept {
   return frame.sensors.size() * (frame.sensors.size() - 1);
 }
-/// Of one dataset.
+/// How many numbers one dataset has.
 [[nodiscard]] std::size_t n_statistics(const StudyFrame& frame) noexcept;
 
 /// A number for every statistic of a dataset, in blocks: of each cell, of each trial over all its sensors, and of each
@@ -131,7 +131,7 @@ class Statistics {
   std::size_t n_trials_ = 0, n_sensors_ = 0;
   Values values_;  ///< cells, trials, pairs
 };
-/// Those of one dataset.
+/// The statistics of one dataset.
 using DatasetStatistics = Statistics<std::span<const float>>;
 
 /// Seconds with motion of a cell; NaN if they aren't known.

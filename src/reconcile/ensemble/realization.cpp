@@ -173,7 +173,7 @@ void change_presence(const SceneSpec& scene, ScriptSpec& script, const Draw& dra
   }
 }
 
-/// Of these trials; none given: of all.
+/// Runs of these trials; of all if none are given.
 std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size_t> trials) {
   std::vector<std::uint32_t> runs;
   const std::size_t n_trials = model.script().trials.size();
@@ -189,7 +189,8 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
   if (series) data.push_back(std::move(*series));
 }
 
-/// Both. What the script has is never looked for again, so one of the same name is the nuisance's, and gives way.
+/// All effects. What the script has is never looked for again, so one of the same name is the nuisance's, and gives
+/// way.
 std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const EffectSpec> more) {
   std::erase_if(own, [&](const EffectSpec& effect) {
     return std::ranges::find(more, effect.name, &EffectSpec::name) != more.end();

@@ -69,9 +69,9 @@ struct Decision {
 
 /// Why a hypothesis is kept or dropped, looked at by itself.
 [[nodiscard]] Reason reason_of(const HypothesisScore& score, bool kept, double alpha);
-/// Of the hypothesis that would have been named.
+/// Why the hypothesis that would have been named is dropped.
 [[nodiscard]] Reason like_impostors(const HypothesisScore& score);
-/// Not ruled out, but another is named.
+/// Why a hypothesis isn't named though it isn't ruled out.
 [[nodiscard]] Reason less_likely(const HypothesisScore& score, const HypothesisScore& named);
 /// The likeliest family. scores: (n_hypotheses) nothing first.
 [[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);

@@ -52,7 +52,7 @@ class FeatureMap {
   void learn_scales(const stats::Matrix<float>& plain);
   void learn_covariates(const std::vector<CellKnowledge>& knowledge);
   [[nodiscard]] Scaled scaled(const DatasetStatistics& data) const;
-  /// And of how many trials.
+  /// The sum, and of how many trials.
   [[nodiscard]] std::pair<double, double> sum_over_trials(const Scaled& data, std::size_t sensor,
                                                           CellStatistic statistic) const;
   void write_cells(const Scaled& data, Writer& out) const;

@@ -81,7 +81,7 @@ std::vector<const EffectSpec*> drawn_in(const ReferenceTable& table, std::span<c
   return drawn;
 }
 
-/// Of one that doesn't apply: what is usual.
+/// The value of a parameter that doesn't apply is the usual one.
 double flat_value(const ParameterInfo& info, const EffectSpec& drawn) {
   const auto value = drawn.parameters.find(info.name);
   return to_flat(info, value == drawn.parameters.end() ? info.typical : value->second);

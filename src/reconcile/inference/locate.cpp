@@ -27,7 +27,7 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
 
 constexpr std::uint32_t n_pilot_realizations = 40;
 
-/// Of those that were asked for by name.
+/// Refuses an effect that was asked for by name and means nothing here.
 void require_meaning(const SceneSpec& scene, const ScriptSpec& script, const std::vector<std::string>& asked) {
   for (const std::string& name : asked) {
     const effects::EffectInfo& info = effects::find(name).info;

@@ -31,7 +31,7 @@ namespace pirsim::reconcile {
 /// Statistics of the datasets of one hypothesis, all or those of training or calibration realizations.
 enum class Subset { all, training, calibration };
 [[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Subset subset);
-/// Of an effect that is in the table.
+/// The number of an effect that is in the table.
 [[nodiscard]] std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect);
 
 class TableView;
@@ -72,7 +72,7 @@ class TableView {
   [[nodiscard]] double p_of_row(std::size_t row) const { return rows().p[row]; }
 
  private:
-  /// Of the table.
+  /// What the table's rows are in this view.
   struct Rows {
     stats::Matrix<float> features;  ///< (n_rows x n_features)
     std::vector<double> p;          ///< (n_rows)

@@ -261,7 +261,7 @@ class Loop {
     tell("the name is taken back: a relative applied in its place does better");
   }
 
-  /// With all that has been applied.
+  /// Tests the model with all that has been applied.
   void take_look() {
     const double level = level_with(applied_.size(), settings_.alpha);
     context_.begin("does the model with " + joined(names(), " + ") + " applied pass");
@@ -396,7 +396,7 @@ class Loop {
     return candidate != outcome_.candidates.end() && comes_nearest(candidate->score, outcome_.looks.back());
   }
 
-  /// The one name that was given.
+  /// Takes back the one name that was given.
   void take_back() {
     const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
     refused->kept = false;

@@ -33,7 +33,7 @@ bool surely_passes(double p, std::size_t n_datasets) {
 /// With fewer datasets no data are strange enough.
 bool can_refuse(std::size_t n_datasets, double level) { return static_cast<double>(n_datasets + 1) * level >= 1.0; }
 
-/// As they are in one realization.
+/// The effects as they are in one realization.
 std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const ReferenceStudy& reference,
                               std::uint64_t seed, std::uint32_t realization) {
   Stream stream({seed, realization, 0, Purpose::model_check});

@@ -21,7 +21,7 @@ struct PatchedModel {
   std::span<const float> observed;  ///< statistics of the data
 };
 
-/// Of the global test.
+/// What the global test says.
 struct GlobalP {
   double p = 0.0;      ///< 0 for a model in which people can hardly get about
   double least = 0.0;  ///< no data give a smaller one: so few datasets were simulated

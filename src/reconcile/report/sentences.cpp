@@ -13,7 +13,7 @@
 namespace pirsim::reconcile {
 namespace {
 
-/// With its twins.
+/// The effect's name with those of its twins.
 std::string name_in_words(const FittedEffect& fitted) {
   std::string text = fitted.effect.name;
   for (const std::string& twin : effects::twins_of(fitted.effect.name))
@@ -40,7 +40,7 @@ std::string strength_in_words(const FittedEffect& fitted) {
 
 using What = DataFinding::What;
 
-/// 1,800
+/// "1,800"
 std::string grouped(std::size_t n) {
   std::string digits = std::to_string(n);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
@@ -101,7 +101,7 @@ std::string where(const Outcome& outcome) {
          " by more than chance (everything together: " + p + ").";
 }
 
-/// Of which effects a sentence speaks.
+/// The effects of which a sentence speaks.
 std::string all_of(const Outcome& outcome) { return outcome.looked_for.empty() ? "the catalogue" : "those looked for"; }
 
 std::string among_known(const Outcome& outcome) {
@@ -299,7 +299,7 @@ std::string ranges_looked_for(const Outcome& outcome) {
          "reconcile again.";
 }
 
-/// Before it is believed.
+/// What to look at before the effect is believed.
 std::string step_of_nearest(const Outcome& outcome) {
   const std::string& effect = outcome.named.front();
   return "What to do next: look for " + effect +

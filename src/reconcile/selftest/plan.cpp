@@ -40,7 +40,7 @@ ScriptedAction labelled(Action what, const ScriptSpec& script) {
   return {std::move(what), {}, script.summary.phases.empty() ? std::string() : script.summary.phases.front(), {}};
 }
 
-/// The first person of the script.
+/// A trial of the script's first person alone, without actions.
 TrialSpec alone(const ScriptSpec& script, std::string id) {
   const auto peopled = std::ranges::find_if(script.trials, [](const TrialSpec& t) { return !t.people.empty(); });
   if (peopled == script.trials.end()) throw Error(ErrorCode::infeasible, "nobody is in any trial");

@@ -111,7 +111,7 @@ struct SelftestResult {
 /// What a reference study's table says of them.
 [[nodiscard]] SelftestResult judge(const ReferenceStudy& reference, const std::vector<InjectedDataset>& injected,
                                    const SelftestSettings& settings, const Context& context = {});
-/// Both, with a reference study for full data of the settings' kind.
+/// Injects and judges, with a reference study for full data of the settings' kind.
 [[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
                                       const SelftestSettings& settings, const Context& context = {});
 
