@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "files/read/csv_reader.hpp"
@@ -42,7 +41,7 @@ struct NamedColumn {
   const char *column, *name;
 };
 
-void add_columns(const fs::path& file, std::span<const NamedColumn> columns, RoomMeans& means) {
+void add_columns(const fs::path& file, const std::vector<NamedColumn>& columns, RoomMeans& means) {
   const io::CsvTable table = io::CsvTable::read(file);
   Diagnostics faults;
   const auto room = table.required_column("room", faults);
@@ -75,13 +74,9 @@ void add_effects(const fs::path& file, RoomMeans& means) {
 
 Parameters parameters_of(const fs::path& folder) {
   RoomMeans means;
-  constexpr std::array of_rooms{NamedColumn{"floor_m2", "floor_m2"}, NamedColumn{"seats", "seats"},
-                                NamedColumn{"staff", "people"}};
-  constexpr std::array of_days{NamedColumn{"ambient_c", "ambient_c"}};
-  constexpr std::array of_sensors{NamedColumn{"y_m", "sensors.height_m"}, NamedColumn{"tilt_deg", "sensors.tilt_deg"}};
-  add_columns(folder / "rooms.csv", of_rooms, means);
-  add_columns(folder / "sensors.csv", of_sensors, means);
-  add_columns(folder / "days.csv", of_days, means);
+  add_columns(folder / "rooms.csv", {{"floor_m2", "floor_m2"}, {"seats", "seats"}, {"staff", "people"}}, means);
+  add_columns(folder / "sensors.csv", {{"y_m", "sensors.height_m"}, {"tilt_deg", "sensors.tilt_deg"}}, means);
+  add_columns(folder / "days.csv", {{"ambient_c", "ambient_c"}}, means);
   add_effects(folder / "effects.csv", means);
   Parameters parameters;
   means.tell(parameters);

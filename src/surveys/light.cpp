@@ -702,15 +702,18 @@ LitRow Control::add(const Sample& row, std::string_view day) {
 Costs Control::finish() const {
   Costs costs{state_->rule.name, state_->window_s, {}, {}};
   for (const Light& light : state_->lights) costs.lights.push_back(light.costs(state_->people));
+  const auto remark = [&](const Where& where, const std::string& what) {
+    costs.remarks.push_back({Severity::warning, where, what});
+  };
   for (const LightSpec& light : state_->rule.lights) {
+    const std::string name = "light '" + light.id + "': ";
     const auto tell_rounding = [&](const char* what, double time, double unit_s, const char* unit) {
       const double in_rows =
           static_cast<double>(std::llround(unit_s * time / state_->window_s)) * state_->window_s / unit_s;
       if (std::abs(in_rows - time) < 1e-6) return;
-      costs.remarks.push_back({Severity::warning, light.where,
-                               "light '" + light.id + "': in rows of " + shortest_number(state_->window_s) + " s " +
-                                   what + " of " + shortest_number(time) + " " + unit + " is one of " +
-                                   shortest_number(in_rows) + " " + unit});
+      remark(light.where, name + "in rows of " + shortest_number(state_->window_s) + " s " + what + " of " +
+                              shortest_number(time) + " " + unit + " is one of " + shortest_number(in_rows) + " " +
+                              unit);
     };
     for (const double delay_min : light.delays_min) tell_rounding("a delay", delay_min, 60.0, "min");
     if (light.night) tell_rounding("a delay at night", light.night->delay_min, 60.0, "min");
@@ -720,26 +723,17 @@ Costs Control::finish() const {
     if (light.manual) tell_rounding("a grace_s", light.manual->grace_s, 1.0, "s");
     if (light.wave_s) tell_rounding("a wave_s", *light.wave_s, 1.0, "s");
     const bool wants_clock = light.night || light.from_h > 0.0 || light.to_h < 24.0;
-    if (wants_clock && !state_->has_clock) {
-      costs.remarks.push_back(
-          {Severity::warning, light.where,
-           "light '" + light.id + "': the rows have no clock: `night`, `from` and `to` do nothing"});
-    }
-    if (!light.area.empty() && light.sensors.empty() && state_->n_areas > 1) {
-      costs.remarks.push_back(
-          {Severity::warning, light.where,
-           "light '" + light.id + "': the sensors of all areas switch it; name its `sensors`, or say --scene"});
-    }
+    if (wants_clock && !state_->has_clock)
+      remark(light.where, name + "the rows have no clock: `night`, `from` and `to` do nothing");
+    if (!light.area.empty() && light.sensors.empty() && state_->n_areas > 1)
+      remark(light.where, name + "the sensors of all areas switch it; name its `sensors`, or say --scene");
   }
   if (state_->n_missing > 0) {
-    costs.remarks.push_back({Severity::warning,
-                             {},
-                             counted(static_cast<std::size_t>(state_->n_missing), "row") + " of " +
-                                 shortest_number(state_->window_s) +
-                                 " s are missing between those that are there: nothing is known of them"});
+    remark({}, counted(static_cast<std::size_t>(state_->n_missing), "row") + " of " +
+                   shortest_number(state_->window_s) +
+                   " s are missing between those that are there: nothing is known of them");
   }
-  if (state_->people == People::unknown)
-    costs.remarks.push_back({Severity::warning, {}, "the rows have no people: who was left in the dark isn't known"});
+  if (state_->people == People::unknown) remark({}, "the rows have no people: who was left in the dark isn't known");
   return costs;
 }
 

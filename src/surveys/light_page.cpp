@@ -19,7 +19,21 @@ constexpr int decimals = 6;
 
 /// Empty where it isn't known.
 Cell number(double value) { return std::isnan(value) ? Cell() : Cell(value); }
-Cell end_of(const Figure& figure, double Interval::*end) {
+template <double LightCosts::*member>
+Cell of_light(const CostLine& line) {
+  return number(line.light.*member);
+}
+template <double DelayCosts::*member>
+Cell of_delay(const CostLine& line) {
+  return number(line.at.*member);
+}
+template <Figure DelayCosts::*member>
+Cell value_of(const CostLine& line) {
+  return number((line.at.*member).value);
+}
+template <Figure DelayCosts::*member, double Interval::*end>
+Cell end_of(const CostLine& line) {
+  const Figure& figure = line.at.*member;
   return figure.over_days ? number((*figure.over_days).*end) : Cell();
 }
 
@@ -30,39 +44,28 @@ constexpr std::string_view low = "low end of its interval over days", high = "hi
 
 constexpr Column<CostLine> costs_by_delay[]{
     {{"light", Holds::text, "its id"}, [](const CostLine& line) -> Cell { return line.light.id; }},
-    {info("delay_min", "from the last motion until it goes off", "min"),
-     [](const CostLine& line) { return number(line.at.delay_min); }},
+    {info("delay_min", "from the last motion until it goes off", "min"), of_delay<&DelayCosts::delay_min>},
     {{"days", Holds::count, "of the rows"}, [](const CostLine& line) -> Cell { return line.light.days; }},
-    {info("hours", "in which all of its sensors are known", "h"),
-     [](const CostLine& line) { return number(line.light.hours); }},
-    {info("occupied_h", "of them, with somebody there", "h"),
-     [](const CostLine& line) { return number(line.light.occupied_h); }},
-    {info("lit_h", "with light", "h"), [](const CostLine& line) { return number(line.at.lit_h); }},
-    {info("lit_empty_h", "with light while nobody was there", "h"),
-     [](const CostLine& line) { return number(line.at.lit_empty_h); }},
-    {info("dark_h", "without light while somebody was there", "h"),
-     [](const CostLine& line) { return number(line.at.dark_h); }},
-    {info("lit_share", "of all hours"), [](const CostLine& line) { return number(line.at.lit_share.value); }},
-    {info("lit_share_low", low), [](const CostLine& line) { return end_of(line.at.lit_share, &Interval::low); }},
-    {info("lit_share_high", high), [](const CostLine& line) { return end_of(line.at.lit_share, &Interval::high); }},
-    {info("switched_on_a_day", "how often"), [](const CostLine& line) { return number(line.at.switched_on_a_day); }},
+    {info("hours", "in which all of its sensors are known", "h"), of_light<&LightCosts::hours>},
+    {info("occupied_h", "of them, with somebody there", "h"), of_light<&LightCosts::occupied_h>},
+    {info("lit_h", "with light", "h"), of_delay<&DelayCosts::lit_h>},
+    {info("lit_empty_h", "with light while nobody was there", "h"), of_delay<&DelayCosts::lit_empty_h>},
+    {info("dark_h", "without light while somebody was there", "h"), of_delay<&DelayCosts::dark_h>},
+    {info("lit_share", "of all hours"), value_of<&DelayCosts::lit_share>},
+    {info("lit_share_low", low), end_of<&DelayCosts::lit_share, &Interval::low>},
+    {info("lit_share_high", high), end_of<&DelayCosts::lit_share, &Interval::high>},
+    {info("switched_on_a_day", "how often"), of_delay<&DelayCosts::switched_on_a_day>},
     {{"false_offs", Holds::count, "how often it went off while somebody was there"},
      [](const CostLine& line) { return line.light.people == People::known ? Cell(line.at.false_offs) : Cell(); }},
-    {info("false_offs_an_hour", "of occupied time"),
-     [](const CostLine& line) { return number(line.at.false_offs_an_hour.value); }},
-    {info("false_offs_an_hour_low", low),
-     [](const CostLine& line) { return end_of(line.at.false_offs_an_hour, &Interval::low); }},
-    {info("false_offs_an_hour_high", high),
-     [](const CostLine& line) { return end_of(line.at.false_offs_an_hour, &Interval::high); }},
-    {info("dark_share", "of occupied time"), [](const CostLine& line) { return number(line.at.dark_share.value); }},
-    {info("dark_share_low", low), [](const CostLine& line) { return end_of(line.at.dark_share, &Interval::low); }},
-    {info("dark_share_high", high), [](const CostLine& line) { return end_of(line.at.dark_share, &Interval::high); }},
-    {info("longest_dark_s", "somebody was in the dark without a break", "s"),
-     [](const CostLine& line) { return number(line.at.longest_dark_s); }},
-    {info("mean_wait_s", "from coming into an empty area to light", "s"),
-     [](const CostLine& line) { return number(line.at.mean_wait_s); }},
-    {info("longest_wait_s", "the longest of these", "s"),
-     [](const CostLine& line) { return number(line.at.longest_wait_s); }},
+    {info("false_offs_an_hour", "of occupied time"), value_of<&DelayCosts::false_offs_an_hour>},
+    {info("false_offs_an_hour_low", low), end_of<&DelayCosts::false_offs_an_hour, &Interval::low>},
+    {info("false_offs_an_hour_high", high), end_of<&DelayCosts::false_offs_an_hour, &Interval::high>},
+    {info("dark_share", "of occupied time"), value_of<&DelayCosts::dark_share>},
+    {info("dark_share_low", low), end_of<&DelayCosts::dark_share, &Interval::low>},
+    {info("dark_share_high", high), end_of<&DelayCosts::dark_share, &Interval::high>},
+    {info("longest_dark_s", "somebody was in the dark without a break", "s"), of_delay<&DelayCosts::longest_dark_s>},
+    {info("mean_wait_s", "from coming into an empty area to light", "s"), of_delay<&DelayCosts::mean_wait_s>},
+    {info("longest_wait_s", "the longest of these", "s"), of_delay<&DelayCosts::longest_wait_s>},
 };
 
 std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }

@@ -396,9 +396,17 @@ DayReport::DayReport(const Model& model)
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
 }
 
-double DayReport::hour_of(std::size_t bin) const { return from_h_ + (static_cast<double>(bin) + 0.5) * bin_s / hour_s; }
-
-std::string DayReport::time_of(double hours) const { return has_clock_ ? hours_text(hours) : fixed(hours, 2) + " h"; }
+template <typename PointOf>
+io::LineChart::Line DayReport::line_over_time(PointOf point_of) const {
+  io::LineChart::Line line;
+  for (std::size_t k = 0; k < bins_.size(); ++k) {
+    if (bins_[k].windows == 0.0) continue;
+    io::LineChart::Point& point = line.points.emplace_back(point_of(bins_[k]));
+    point.x = from_h_ + (static_cast<double>(k) + 0.5) * bin_s / hour_s;
+    point.hint = (has_clock_ ? hours_text(point.x) : fixed(point.x, 2) + " h") + point.hint;
+  }
+  return line;
+}
 
 DayReport::Bin& DayReport::bin_at(double time_s) {
   const auto k = static_cast<std::size_t>(std::max(0.0, time_s - 1e-6) / bin_s);
@@ -488,18 +496,11 @@ io::LineChart DayReport::people_chart() const {
   io::LineChart chart = chart_over_time(
       "People in the room",
       "mean of every ten minutes" + over_runs() + ", with the least and the most that there were at once", "people");
-  io::LineChart::Line line;
-  double most = 1.0;
-  for (std::size_t k = 0; k < bins_.size(); ++k) {
-    const Bin& bin = bins_[k];
-    if (bin.windows == 0.0) continue;
+  chart.lines.push_back(line_over_time([&](const Bin& bin) {
     const double mean = bin.people / bin.windows;
-    most = std::max<double>(most, bin.most);
-    line.points.push_back(
-        {hour_of(k), mean, bin.fewest, bin.most, time_of(hour_of(k)) + ": " + fixed(mean, 2) + " people"});
-  }
-  chart.y_high = most;
-  chart.lines.push_back(std::move(line));
+    chart.y_high = std::max<double>(chart.y_high, bin.most);
+    return io::LineChart::Point{0.0, mean, bin.fewest, bin.most, ": " + fixed(mean, 2) + " people"};
+  }));
   return chart;
 }
 
@@ -507,14 +508,13 @@ io::LineChart DayReport::area_chart() const {
   io::LineChart chart = chart_over_time("People in each area", "mean of every ten minutes" + over_runs(), "people");
   chart.y_high = 0.1;
   for (std::size_t area = 0; area < model_->areas().size(); ++area) {
-    io::LineChart::Line& line = chart.lines.emplace_back();
-    line.name = model_->areas()[area];
-    for (std::size_t k = 0; k < bins_.size(); ++k) {
-      if (bins_[k].windows == 0.0) continue;
-      const double mean = bins_[k].people_of_areas[area] / bins_[k].windows;
+    const std::string& name = model_->areas()[area];
+    chart.lines.push_back(line_over_time([&](const Bin& bin) {
+      const double mean = bin.people_of_areas[area] / bin.windows;
       chart.y_high = std::max(chart.y_high, mean);
-      line.points.push_back({hour_of(k), mean, {}, {}, time_of(hour_of(k)) + ", " + line.name + ": " + fixed(mean, 2)});
-    }
+      return io::LineChart::Point{0.0, mean, {}, {}, ", " + name + ": " + fixed(mean, 2)};
+    }));
+    chart.lines.back().name = name;
   }
   return chart;
 }
@@ -522,13 +522,10 @@ io::LineChart DayReport::area_chart() const {
 io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
   io::LineChart chart = chart_over_time(model_->scene().sensors[sensor].id,
                                         "share of rows with motion in every ten minutes" + over_runs(), "share");
-  io::LineChart::Line line;
-  for (std::size_t k = 0; k < bins_.size(); ++k) {
-    if (bins_[k].windows == 0.0) continue;
-    const double share = bins_[k].motion[sensor] / bins_[k].windows;
-    line.points.push_back({hour_of(k), share, {}, {}, time_of(hour_of(k)) + ": " + percents(share) + " %"});
-  }
-  chart.lines.push_back(std::move(line));
+  chart.lines.push_back(line_over_time([&](const Bin& bin) {
+    const double share = bin.motion[sensor] / bin.windows;
+    return io::LineChart::Point{0.0, share, {}, {}, ": " + percents(share) + " %"};
+  }));
   return chart;
 }
 

@@ -80,8 +80,9 @@ class DayReport {
   [[nodiscard]] io::GridChart count_chart() const;
   [[nodiscard]] io::MapChart floor_chart() const;
   [[nodiscard]] Bin& bin_at(double time_s);
-  [[nodiscard]] double hour_of(std::size_t bin) const;
-  [[nodiscard]] std::string time_of(double hours) const;
+  /// point_of(bin): of each that has windows, without its time, which is set and told before its hint.
+  template <typename PointOf>
+  [[nodiscard]] io::LineChart::Line line_over_time(PointOf point_of) const;
   [[nodiscard]] std::string over_runs() const;
   [[nodiscard]] io::LineChart chart_over_time(const std::string& title, const std::string& note,
                                               const std::string& y_label) const;

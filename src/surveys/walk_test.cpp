@@ -247,23 +247,26 @@ struct PointLine {
   std::string_view major, minor;
 };
 
+template <Tries PointResult::*motion, int Tries::*number>
+Cell of_tries(const PointLine& line) {
+  return (line.point.*motion).*number;
+}
+
 constexpr Column<PointLine> point_lines[]{
     {{"x_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.x_m; }},
     {{"z_m", Holds::number, "of the point", "m"}, [](const PointLine& line) -> Cell { return line.z_m; }},
-    {{"major_tries", Holds::count, "walks across it that are possible"},
-     [](const PointLine& line) -> Cell { return line.point.major.made; }},
+    {{"major_tries", Holds::count, "walks across it that are possible"}, of_tries<&PointResult::major, &Tries::made>},
     {{"major_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
-     [](const PointLine& line) -> Cell { return line.point.major.noticed; }},
+     of_tries<&PointResult::major, &Tries::noticed>},
     {{"major", Holds::text, "`pass`, `fail`, or `untried` where nobody can walk"},
      [](const PointLine& line) -> Cell { return line.major; }},
-    {{"minor_tries", Holds::count, "movements of arms over it"},
-     [](const PointLine& line) -> Cell { return line.point.minor.made; }},
+    {{"minor_tries", Holds::count, "movements of arms over it"}, of_tries<&PointResult::minor, &Tries::made>},
     {{"minor_noticed", Holds::count, "of them, in which a sensor reported motion in time"},
-     [](const PointLine& line) -> Cell { return line.point.minor.noticed; }},
+     of_tries<&PointResult::minor, &Tries::noticed>},
     {{"minor", Holds::text, "`pass`, `fail`, or `untried` where nobody can sit"},
      [](const PointLine& line) -> Cell { return line.minor; }},
     {{"minor_deaf", Holds::count, "of those without notice, in which a sensor saw what moved"},
-     [](const PointLine& line) -> Cell { return line.point.minor.deaf; }},
+     of_tries<&PointResult::minor, &Tries::deaf>},
 };
 
 }  // namespace

@@ -51,11 +51,11 @@ TEST_CASE("chosen candidates cover nearly what the best subset of all does, and 
   for (unsigned seed = 0; seed < n_cases; ++seed) {
     const Cover cover = random_cover(seed, 12, 30);
     const std::uint64_t most = most_of_all(cover, 4);
-    const std::uint64_t greedy = cover.worth_of(greedy(cover, 4));
+    const std::uint64_t by_greed = cover.worth_of(greedy(cover, 4));
     const std::uint64_t best = cover.worth_of(best_of(cover, {0, 1, 2, 3}));
     INFO(seed);
-    CHECK(static_cast<double>(greedy) >= (1.0 - std::exp(-1.0)) * static_cast<double>(most));
-    CHECK(best >= greedy);
+    CHECK(static_cast<double>(by_greed) >= (1.0 - std::exp(-1.0)) * static_cast<double>(most));
+    CHECK(best >= by_greed);
     CHECK(best >= cover.worth_of({0, 1, 2, 3}));
     REQUIRE(best <= most);
     optimal += best == most ? 1 : 0;
