@@ -3,6 +3,8 @@
 
 Usage: run_e2e.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
+import base64
+import gzip
 import json
 import pathlib
 import re
@@ -380,6 +382,9 @@ class Light(Case):
         self.assertNotIn("warning", by_own)
         self.assertIn("rule.yaml:2:10: warning: light 'living_room': the sensors of all areas switch it", by_all)
         self.assertNotEqual(by_all.split("light,delay_min")[1], plain.split("light,delay_min")[1])
+        page = self.folder / "light.html"
+        pirsim("control", self.two_rooms, "--rule", rule, "-q", "-o", self.folder / "costs.csv", "--report", page)
+        self.assertRegex(page.read_text(), "<footer>pirsim [^<]*, rows.csv, rule.yaml</footer>")
 
     def test_seats_that_no_sensor_notices_are_told(self):
         made_by = "--scene", DATA / "rooms" / "two_rooms.gltf", "--script", DATA / "studies" / "two_rooms.yaml"
@@ -872,6 +877,17 @@ class Looking(Case):
         blind = self.write("blind.gltf", json.dumps(scene))
         result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
         self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
+
+    def test_a_page_has_the_thresholds_of_each_side(self):
+        sensor = (DATA / "sensors" / "EKMC1604111.yaml").read_text()
+        self.assertIn("negative_v: 0.45", sensor)
+        self.write("sensors/EKMC1604111.yaml", sensor.replace("negative_v: 0.45", "negative_v: 0.25"))
+        page = self.folder / "run.html"
+        pirsim("view", *study_files(), "--sensors", self.folder / "sensors", "--set", "sensing.response=analog",
+               "--to", 2, "-q", "-o", page)
+        data = re.search('id="data">(.*?)</script>', page.read_text())[1]
+        first = json.loads(gzip.decompress(base64.b64decode(data)))["sensors"][0]
+        self.assertEqual((first["positive_v"], first["negative_v"]), (0.45, 0.25))
 
     def test_a_run_says_what_it_wrote_and_quiet_says_nothing(self):
         out = self.folder / "rows.csv"

@@ -860,6 +860,16 @@ people:
             counted[seat] = people.get("waits_outside", 0), "waited outside" in told
         self.assertEqual(counted, {"S1": (1, True), "S2": (0, False)})
 
+    def test_a_merged_summary_tells_who_waited_as_that_of_the_whole_does(self):
+        script = "--script", self.write("two.yaml", self.SCRIPT)
+        room = "--scene", DATA / "rooms" / "meeting_room.gltf"
+        whole, merged = self.folder / "whole.md", self.folder / "merged.md"
+        pirsim(*room, *script, "-q", "-o", self.folder / "rows.csv", "--summary", whole)
+        pirsim(*room, *script, "-q", "-o", self.folder / "shards", "--shard", "1/1")
+        pirsim("merge", self.folder / "shards", *script, "-q", "-o", self.folder / "all.csv", "--summary", merged)
+        self.assertIn("outside", whole.read_text())
+        self.assertEqual(merged.read_text(), whole.read_text())
+
 
 class Streams(Case):
     def test_scene_and_script_from_standard_input_and_rows_to_standard_output(self):

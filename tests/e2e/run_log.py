@@ -37,9 +37,9 @@ class LogCase(Case):
 
 class Inputs(LogCase):
     def test_encodings_and_compression(self):
-        for encoded in (WIDE, b"\xef\xbb\xbf" + WIDE, WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
+        for encoded in (WIDE.encode(), b"\xef\xbb\xbf" + WIDE.encode(), WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
                         WIDE.encode("utf-16-be"), "\ufeff".encode("utf-16-be") + WIDE.encode("utf-16-be"),
-                        WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE)):
+                        WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE.encode())):
             self.assertEqual(self.rows(self.write("log", encoded), "--step", 1), ROWS)
 
     def test_standard_input_and_pipes(self):
@@ -171,7 +171,7 @@ REFUSED = {
     "an invisible sensor": (b"time,sensor,state\n1,A\x1b,on\n2,A\x1b,off\n", "U+001B"),
     "an endless line": (b"time,A\n" + b"1" * 3_000_000, "log:2:1: error: a line longer than 1 MB"),
     "many columns": (b"time" + b",".join(b"c%d" % i for i in range(20_000)) + b"\n1\n", "more than 10000 fields"),
-    "damaged gzip": (gzip.compress(WIDE)[:-12], "is cut short"),
+    "damaged gzip": (gzip.compress(WIDE.encode())[:-12], "is cut short"),
 }
 
 # What is read, and told: content, rows of windows of 1 s, remarks.
@@ -329,6 +329,9 @@ class Odd(LogCase):
                            (("-o", log), "it would be overwritten"), (("--report", "page.txt"), ".html")):
             output = () if args[0] in ("-o", "--report") else ("-o", self.folder / "rows.csv")
             self.assertIn(told, run("log", log, *args, *output, code=2)[1])
+        page = self.folder / "log.html"
+        run("log", log, self.write("next.csv", WIDE.replace("04-06", "04-07")), "-q", "--report", page)
+        self.assertIn("log and 1 more", re.search("<title>(.*?)</title>", page.read_text())[1])
         self.assertEqual(self.rows(log, "--step", 1, "--from", "2025-04-06T18:00:01", "--to", "2025-04-06T18:00:03"),
                          ROWS.splitlines()[0] + "\n1,2025-04-06T18:00:02,1,\n2,2025-04-06T18:00:03,1,1\n")
 

@@ -81,3 +81,30 @@ TEST_CASE("a finding is set off below the title and long cells are prose", "[rep
   CHECK(count(html, "<td class=\"words\">") == 2);
   CHECK(count(html, "<th scope=\"col\" class=\"words\">why") == 1);
 }
+
+TEST_CASE("only a long room's map stands in a row of its own", "[report]") {
+  MapChart usual = small_map(), wide = small_map();
+  wide.columns = 3;
+  wide.values.emplace_back();
+  Report report;
+  report.sections = {{"maps", {}, {}, {usual, wide}}};
+  const std::string html = to_html(report);
+  CHECK(count(html, "<div class=\"charts map\">") == 1);
+  CHECK(count(html, "<div class=\"charts map wide\">") == 1);
+}
+
+TEST_CASE("ranges and clocks go into the page as they were given", "[report]") {
+  DotsChart dots;
+  dots.values = {1.0};
+  dots.low = 0.5;
+  dots.high = 2.0;
+  LineChart hours;
+  hours.x_ticks = LineChart::Ticks::clock;
+  hours.lines = {{"S1", {{8.0, 1.0, 0.0, 3.0}}}};
+  Report report;
+  report.sections = {{"ranges", {}, {}, {dots, hours, LineChart{}}}};
+  const std::string html = to_html(report);
+  CHECK(count(html, R"("low":0.5,"high":2.0,)") == 1);
+  CHECK(count(html, R"({"line":"S1","x":8.0,"y":1.0,"low":0,"high":3,)") == 1);
+  CHECK(count(html, R"("clock":true)") == 1);
+}

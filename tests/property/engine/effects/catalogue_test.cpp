@@ -129,7 +129,7 @@ TEST_CASE("a prior's draws are accepted by the check and stay in their ranges") 
   Stream stream({8, 0, 0, Purpose::test});
   for (const Place& place : places()) {
     for (const Effect* effect : effects::catalogue()) {
-      for (int i = 0; i < 50; ++i) {
+      for (int i = 0; i < 20; ++i) {
         const EffectSpec spec = effects::draw_from_prior(*effect, place.scene, place.script, stream);
         Diagnostics diagnostics;
         effects::check(std::vector{spec}, place.scene, diagnostics);

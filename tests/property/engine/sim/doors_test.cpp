@@ -391,3 +391,24 @@ TEST_CASE("what a leaf sweeps is drawn where it turns") {
     }
   }
 }
+
+TEST_CASE("a way leads through a door where it crosses the threshold between its jambs") {
+  for (const DoorHinge hinge : {DoorHinge::left, DoorHinge::right}) {
+    for (const DoorOpens opens : {DoorOpens::inward, DoorOpens::outward}) {
+      DoorSpec door = inner_door(DoorState::shut);  // 0.9 m wide
+      door.hinge = hinge;
+      door.opens = opens;
+      const DoorSpec hung = two_rooms({door}).doors.front();
+      const DoorLeaf leaf(hung, 0.1);
+      const auto leads_through = [&](const Vec2& from, const Vec2& to) {  // along the wall, and away from it
+        return leaf.leads_through(floor_point(hung.world_from_door * Vec3(from.x, 0.0, from.y)),
+                                  floor_point(hung.world_from_door * Vec3(to.x, 0.0, to.y)));
+      };
+      for (const double x : {-0.44, 0.0, 0.44}) CHECK(leads_through({x, 1.0}, {x, -1.0}));
+      for (const double x : {-0.46, 0.46}) CHECK_FALSE(leads_through({x, 1.0}, {x, -1.0}));
+      CHECK(leads_through({-0.6, 1.0}, {0.6, -1.0}));
+      CHECK_FALSE(leads_through({0.2, 1.0}, {1.0, -1.0}));
+      CHECK_FALSE(leads_through({-0.4, 1.0}, {0.4, 0.5}));
+    }
+  }
+}

@@ -65,3 +65,12 @@ TEST_CASE("names in Markdown are shown as they are") {
   CHECK(markdown_code("plain.gltf") == "`plain.gltf`");
   CHECK(markdown_code("a`b``c") == "``` a`b``c ```");
 }
+
+TEST_CASE("of many names that there are, twenty are told") {
+  std::vector<std::string> known;
+  for (char name = 'a'; name <= 'v'; ++name) known.push_back(std::string(8, name));
+  const std::string told = near_or_all("1", known);
+  CHECK_THAT(told, contains("aaaaaaaa, bbbbbbbb") && contains("tttttttt and 2 more"));
+  CHECK_THAT(told, !contains("uuuuuuuu"));
+  CHECK_THAT(near_or_all("1", {known.begin(), known.begin() + 20}), !contains("more"));
+}

@@ -96,3 +96,10 @@ TEST_CASE("A trial has its schedule's clock or its script's, and never two") {
   REQUIRE(others.issues().size() == 1);
   CHECK_THAT(others.issues().front().message, contains("script.begin: expected the date and time"));
 }
+
+TEST_CASE("Hours are told as a clock shows them, and a day's end as 24:00") {
+  CHECK(hours_text(0.0) == "0:00");
+  CHECK(hours_text(8.1) == "8:06");
+  CHECK(hours_text(24.0) == "24:00");
+  CHECK(hours_text(25.5) == "1:30");
+}
