@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <glm/geometric.hpp>
 #include <string>
 #include <variant>
 
 #include "engine/body/skeleton.hpp"
+#include "model/core/text.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::body {
@@ -45,12 +45,6 @@ double cosine_when_seated(const Measures& m, const SeatPlace& seat) {
   return (hip_height - standing_leg(m).knee_height_m) / m.thigh_m;
 }
 
-std::string decimals(double metres) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2f", metres);
-  return text.data();
-}
-
 }  // namespace
 
 double standing_hip_height_m(const Measures& m) noexcept {
@@ -68,10 +62,10 @@ std::optional<std::string> unfit_height(const Humanoid& humanoid, const SeatPlac
   const double cosine = cosine_when_seated(m, seat), knee_m = standing_leg(m).knee_height_m;
   if (cosine >= std::cos(lowest_thigh) && cosine <= std::cos(highest_thigh)) return std::nullopt;
   const Vec3& point = seat.world_from_seat.origin;
-  return "the seat at (" + decimals(point.x) + ", " + decimals(point.z) + "), whose pelvis point is " +
-         decimals(point.y - seat.floor_height_m) + " m above the floor, can't be sat on by a person of " +
-         decimals(m.stature_m) + " m, who can sit from " + decimals(knee_m + m.thigh_m * std::cos(lowest_thigh)) +
-         " m to " + decimals(knee_m + m.thigh_m * std::cos(highest_thigh)) + " m";
+  return "the seat at (" + fixed(point.x, 2) + ", " + fixed(point.z, 2) + "), whose pelvis point is " +
+         fixed(point.y - seat.floor_height_m, 2) + " m above the floor, can't be sat on by a person of " +
+         fixed(m.stature_m, 2) + " m, who can sit from " + fixed(knee_m + m.thigh_m * std::cos(lowest_thigh), 2) +
+         " m to " + fixed(knee_m + m.thigh_m * std::cos(highest_thigh), 2) + " m";
 }
 
 Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet)

@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 #include <string>
 
 #include "engine/body/ground.hpp"
+#include "model/core/text.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::sim {
@@ -56,11 +55,7 @@ constexpr double passed_m = 0.8;          ///< who passes through others goes at
 constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
 constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
 
-std::string text(const Vec2& place) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(2) << '(' << place.x << ", " << place.y << ") m";
-  return out.str();
-}
+std::string text(const Vec2& place) { return "(" + fixed(place.x, 2) + ", " + fixed(place.y, 2) + ") m"; }
 
 constexpr double way_step_m = 0.05;
 constexpr double unlimited_m = std::numeric_limits<double>::infinity();

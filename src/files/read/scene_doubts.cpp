@@ -3,14 +3,14 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <iomanip>
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <sstream>
+#include <string>
 #include <utility>
 
 #include "files/read/scene_parts.hpp"
+#include "model/core/text.hpp"
 #include "model/geom/floor.hpp"
 #include "model/geom/shapes.hpp"
 #include "model/schema/check_scene.hpp"
@@ -35,17 +35,11 @@ Box box_of(const TriMesh& mesh) {
 }
 
 std::string extent(double width, double depth) {
-  std::ostringstream text;
-  text << std::llround(width) << " m x " << std::llround(depth) << " m";
-  return text.str();
+  return std::to_string(std::llround(width)) + " m x " + std::to_string(std::llround(depth)) + " m";
 }
 
 /// "0.25 m"
-std::string in_metres(double length_m) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << length_m << " m";
-  return text.str();
-}
+std::string in_metres(double length_m) { return fixed(length_m, 2) + " m"; }
 
 /// Nobody means metres by thousands of them.
 std::string unit_of(double metres) { return metres >= 1000.0 ? "millimetres?" : "centimetres?"; }
@@ -94,10 +88,9 @@ class SceneDoubts {
     const double whole_m2 = area.outline.area_m2();
     const double off_m2 = whole_m2 - common_m2(area.outline, scene_.floor);
     if (off_m2 < worth_telling_m2) return;
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(2) << off_m2 << " m2 of area '" << area.id << "' (" << std::setprecision(0)
-         << std::max(1.0, 100.0 * off_m2 / whole_m2) << " %) lie off the floor, where nobody counts";
-    tell("off the floor", node, "area '" + area.id + "'", text.str());
+    tell("off the floor", node, "area '" + area.id + "'",
+         fixed(off_m2, 2) + " m2 of area '" + area.id + "' (" + fixed(std::max(1.0, 100.0 * off_m2 / whole_m2), 0) +
+             " %) lie off the floor, where nobody counts");
   }
 
   void entrance(const EntranceSpec& entrance, int node) {
