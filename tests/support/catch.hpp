@@ -1,5 +1,8 @@
 // Catch2 version 3 and version 2 under one name.
-#pragma once
+// This header is precompiled. GCC knows a header by `#pragma once` from its time as well, which another checkout
+// changes while ccache still has what was precompiled: then it would be there twice.
+#ifndef PIRSIM_TESTS_CATCH_HPP
+#define PIRSIM_TESTS_CATCH_HPP
 
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
@@ -18,3 +21,5 @@ inline auto contains(const std::string& fragment) {
   return Catch::Matchers::Contains(fragment);
 #endif
 }
+
+#endif

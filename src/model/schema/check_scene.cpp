@@ -153,6 +153,7 @@ class SceneCheck {
       const SpecPath place = path.item("places", i);
       check_id(scene_.places[i].id, place, seats);  // names are those of places, to sit or otherwise
       check_upright(scene_.places[i].world_from_place, place.field("world_from_place"));
+      faults_.fields(scene_.places[i], place);
       check_uses(scene_.places[i].uses, place);
     }
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) {

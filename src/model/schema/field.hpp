@@ -22,7 +22,7 @@
 namespace pirsim {
 
 enum class Use {
-  study,   ///< what a study yields hangs on it
+  study,    ///< what a study yields hangs on it
   message,  ///< only messages and outputs say it: names, descriptions, places in files
   reader    ///< the same, and no key of a file: whoever reads the file adds it
 };

@@ -105,8 +105,7 @@ TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {
 
 TEST_CASE("scattered seats are taken with the scatter's spread") {
   const double sd = 0.05;
-  const Model model =
-      meeting_room({bare_effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 60);
+  const Model model = meeting_room({bare_effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 60);
   double squares = 0;
   for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
     const Vec2 off = where_seated(model, run) - place_of(model, model.trial_of(run));

@@ -12,9 +12,9 @@
 #include "support/shipped.hpp"
 
 using namespace pirsim;
-using pirsim::test::wall_lens;
 using pir::band_radiance;
 using pir::kelvin;
+using pirsim::test::wall_lens;
 
 namespace {
 

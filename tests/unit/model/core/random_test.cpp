@@ -7,8 +7,8 @@
 #include "support/catch.hpp"
 
 using pirsim::Purpose;
-using pirsim::Stream;
 using pirsim::Sha256;
+using pirsim::Stream;
 
 TEST_CASE("a stream with key zero gives Philox's published words for counter zero") {
   // Random123's known-answer file kat_vectors: philox4x32 10, counter 0, key 0.
