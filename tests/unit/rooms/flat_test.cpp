@@ -300,7 +300,7 @@ TEST_CASE("faults of a flat's ranges are told with their place and the nearest n
   CHECK_THAT(flat_faults("size_m2: .nan\n"), contains("flat.yaml:1:10"));
   CHECK_THAT(flat_faults("size_m2: [1, 1e9]\n"), contains("flat.yaml:1:11"));
   CHECK_THAT(flat_faults("layout: []\n"), contains("flat.yaml:1:9") && contains("isn't empty"));
-  CHECK_THAT(flat_faults("layout: corridr\n"), contains("flat.yaml:1:9") && contains("isn't empty"));
+  CHECK_THAT(flat_faults("layout: corridr\n"), contains("flat.yaml:1:9") && contains("corridor"));
   CHECK_THAT(flat_faults("sensors_at: wall\n"), contains("flat.yaml:1:13") && contains("doorway"));
   CHECK_THAT(flat_faults("own_kitchen: 2\n"), contains("flat.yaml:1:14"));
   CHECK_THAT(flat_faults("rooms: {a: 1}\n"), contains("flat.yaml:1:8"));
