@@ -758,8 +758,7 @@ class Hostile(Case):
         table = rows(pirsim("effects", "--format", "csv").stdout)
         self.assertEqual(listed, list(dict.fromkeys(row["effect"] for row in table)))
         self.assertGreater(len(listed), 20)
-        for page, what in (("README.md", "imperfections"), ("CHANGELOG.md", "things")):
-            self.assertIn(f"{len(listed)} {what}", (HERE.parents[1] / page).read_text())
+        self.assertIn(f"{len(listed)} imperfections", (HERE.parents[1] / "README.md").read_text())
         for effect in listed:
             self.assertIn("fingerprint:", pirsim("effects", effect).stdout)
         self.assertIn("did you mean 'dead_time'?", pirsim("effects", "dead_tyme", code=2).stderr)
