@@ -83,8 +83,8 @@ class Pool {
   explicit Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings = {}, unsigned threads = 0);
   [[nodiscard]] std::span<const PoolRoom> rooms() const noexcept;
 
-  /// log: its stretches, with or without counts, which weigh the rooms. days: those parts of it that are as the rooms'
-  /// days are, which the verdict compares; none: too little is told.
+  /// log: its days, with or without counts, which weigh the rooms; more days than rooms have say no more. days: those
+  /// parts of it that are as the rooms' days are, which the verdict compares; none: too little is told.
   [[nodiscard]] Calibration calibrate(std::span<const counting::Stretch> log,
                                       std::span<const counting::Stretch> days) const;
 
@@ -119,7 +119,8 @@ void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors);
 
 /// What is compared of a log.
 struct LogDays {
-  std::vector<counting::Stretch> whole;  ///< the hours of each day of which nine tenths are known of every sensor
+  std::vector<counting::Stretch> each;   ///< the hours of each day that the recipe simulates, which weigh the rooms
+  std::vector<counting::Stretch> whole;  ///< those of which nine tenths are known of every sensor
   std::vector<std::string> partial;      ///< dates of those of which less is known, which aren't compared
 };
 /// Of a log without times of day all of it, as one.
@@ -174,6 +175,9 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
 [[nodiscard]] std::string finding(const Calibration& calibration);
 
 // A log counted.
+
+inline constexpr double sure = 0.8;        ///< a number with such odds is told for sure: one of five may be another
+inline constexpr double band_share = 0.9;  ///< of the odds, that the numbers told beside it have together
 
 struct LogCounts {
   LogRows rows;  ///< windows of the counter's step

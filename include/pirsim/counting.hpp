@@ -38,9 +38,11 @@ struct LabelledRoom {
 struct Settings {
   double step_s = 30.0;       ///< between readings
   int modes = 4;              ///< of a number of people: from quiet to busy
-  double shrinkage = 60.0;    ///< pseudo-readings by which a room's emissions are drawn to those of all rooms
+  double shrinkage = 60.0;    ///< pseudo-readings by which a room's emissions and moves are drawn to those of all rooms
   int iterations = 40;        ///< of the Baum-Welch algorithm
   double weight_power = 0.2;  ///< of the log's likelihood in a room's weight
+  /// Odds of motion while somebody is there, of the versions of each room's model among which a log chooses.
+  std::vector<double> livelinesses{0.25, 0.5, 1.0, 2.0, 4.0};
 };
 
 // A hidden Markov model. A state is a number of people in one mode: state = count * modes + mode. A symbol is how many
@@ -50,16 +52,17 @@ struct RoomModel {
   int number = 0;
   double weight = 1.0;            ///< they add up to 1
   std::vector<double> first;      ///< (states) probability at the first reading
+  std::vector<double> moves;      ///< (states x states) probability from one reading to the next, from row to column
   std::vector<double> emissions;  ///< (states x symbols)
+  double liveliness = 1.0;        ///< odds of a sensor's motion while somebody is there, times those in the room
 };
 
 /// Plain and immutable once made.
 struct Counter {
   Settings settings;
   int n_sensors = 1;
-  int n_counts = 1;           ///< 0, 1, ..., n_counts - 1 people
-  std::vector<double> moves;  ///< (states x states) probability from one reading to the next, from row to column
-  std::vector<RoomModel> rooms;
+  int n_counts = 1;                        ///< 0, 1, ..., n_counts - 1 people
+  std::vector<RoomModel> rooms;            ///< perhaps at several livelinesses each
   std::optional<Interval> expected_error;  ///< 90 %, mean absolute error in people; docs/howto/own_room.md
   std::string warning{};                   ///< why its counts can't be relied on; empty: nothing is known against them
   // Of the log that it was calibrated by; empty: it wasn't, or its file doesn't tell.
@@ -69,9 +72,12 @@ struct Counter {
   [[nodiscard]] int n_symbols() const { return n_sensors + 1; }
 };
 
-/// Baum-Welch with known counts: emissions a room, moves of all. Threads change no bit. Throws Error(input) for no
-/// room, rooms without people, and rooms that don't have as many sensors.
+/// Baum-Welch with known counts: emissions and moves a room, drawn to those of all. Threads change no bit. Throws
+/// Error(input) for no room, rooms without people, and rooms that don't have as many sensors.
 [[nodiscard]] Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads = 0);
+
+/// Each room's model at every liveliness of the settings, room by room, which share its weight.
+[[nodiscard]] Counter at_livelinesses(const Counter& counter);
 
 /// (rooms) of the stretches, each begun anew. Readings that are unknown count nothing; counts that are known are held
 /// to.
@@ -104,6 +110,12 @@ struct Estimates {
   }
   /// The least count that as many people or fewer have at least this share of the odds of; of a reading that is told.
   [[nodiscard]] int quantile(std::size_t reading, double share) const;
+  /// The shortest run of counts that has at least this share of the odds, and of those as short the likeliest; of a
+  /// reading that is told.
+  struct Band {
+    int least = 0, most = 0;
+  };
+  [[nodiscard]] Band band(std::size_t reading, double share) const;
 };
 
 [[nodiscard]] Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass);

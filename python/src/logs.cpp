@@ -116,11 +116,6 @@ nb::object tables_of_rooms(const Counter& counter, std::vector<double> RoomModel
   return to_numpy(std::move(all), {n_rooms, n_states, n_columns});
 }
 
-nb::object moves_of(const Counter& counter) {
-  const auto n = static_cast<std::size_t>(counter.n_states());
-  return to_numpy(std::vector<double>(counter.moves), {n, n});
-}
-
 counting::Stretch stretch_of(const Bits& motion) {
   return {static_cast<int>(motion.shape(1)), {motion.data(), motion.data() + motion.size()}};
 }
@@ -262,7 +257,8 @@ void add_counters(nb::module_& module) {
       .def_prop_ro("rooms", [](const Counter& counter) { return of_rooms(counter, &RoomModel::number); })
       .def_prop_ro("weights", [](const Counter& counter) { return of_rooms(counter, &RoomModel::weight); })
       .def_prop_ro("first", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::first); })
-      .def_prop_ro("moves", &moves_of)
+      .def_prop_ro("liveliness", [](const Counter& counter) { return of_rooms(counter, &RoomModel::liveliness); })
+      .def_prop_ro("moves", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::moves); })
       .def_prop_ro("emissions", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::emissions); })
       .def(
           "write", [](const Counter& counter, const std::string& file) { counting::write_counter(file, counter); },

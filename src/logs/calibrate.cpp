@@ -56,70 +56,104 @@ std::vector<double> weights_of(const Counter& counter) {
   return weights;
 }
 
-/// What each room's model says of a day.
-struct DayByRooms {
-  std::vector<Estimates> estimates;
-  std::vector<double> log_likelihoods;
-};
-
-DayByRooms by_each_room(const Counter& counter, counting::Stretch day) {
-  day.people.clear();
-  const auto readings = counting::readings_of(day);
-  const std::size_t modes = counting::size(counter.settings.modes);
-  DayByRooms by;
-  for (const counting::RoomModel& room : counter.rooms) {
-    const counting::ForwardPass pass = counting::forward(counter, room, readings);
-    Estimates own{counter.n_counts, std::vector<double>(pass.beliefs.size() / modes, 0.0)};
-    for (std::size_t i = 0; i < pass.beliefs.size(); ++i) own.probabilities[i / modes] += pass.beliefs[i];
-    by.estimates.push_back(std::move(own));
-    by.log_likelihoods.push_back(pass.log_likelihood);
-  }
-  return by;
-}
-
-struct AbsoluteError {
+struct Mean {
   double sum = 0.0, n = 0.0;
-  [[nodiscard]] std::optional<double> mean() const { return n > 0.0 ? std::optional(sum / n) : std::nullopt; }
+  void add(double value) { sum += value, n += 1.0; }
+  [[nodiscard]] std::optional<double> value() const { return n > 0.0 ? std::optional(sum / n) : std::nullopt; }
 };
 
-void add_error(const std::vector<Estimates>& each, std::span<const double> weights, const std::vector<int>& people,
-               double step_s, AbsoluteError& error) {
-  Estimates mixed{each.front().n_counts, std::vector<double>(each.front().probabilities.size(), 0.0)};
-  for (std::size_t r = 0; r < each.size(); ++r) {
-    for (std::size_t i = 0; i < mixed.probabilities.size(); ++i)
-      mixed.probabilities[i] += weights[r] * each[r].probabilities[i];
-  }
+void add_error(const Estimates& told, const std::vector<int>& people, double step_s, Mean& error) {
   const std::vector<bool> counts = in_use(people, step_s);
   for (std::size_t i = 0; i < people.size(); ++i) {
-    if (!counts[i] || people[i] == counting::unknown_count) continue;
-    error.sum += std::abs(mixed.count(i) - people[i]);
-    error.n += 1.0;
+    if (counts[i] && people[i] != counting::unknown_count) error.add(std::abs(told.count(i) - people[i]));
+  }
+}
+
+/// How far off the counts are by their own probabilities, of readings in use by themselves.
+void add_own_statement(const Estimates& told, double step_s, Mean& statement) {
+  std::vector<int> people(told.probabilities.size() / counting::size(told.n_counts));
+  for (std::size_t i = 0; i < people.size(); ++i) people[i] = told.count(i);
+  const std::vector<bool> counts = in_use(people, step_s);
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    if (!counts[i] || !told.is_told(i)) continue;
+    double expected = 0.0;
+    for (int n = 0; n < told.n_counts; ++n)
+      expected += told.probabilities[i * counting::size(told.n_counts) + counting::size(n)] * std::abs(n - people[i]);
+    statement.add(expected);
   }
 }
 
 struct ErrorOfRoom {
-  std::optional<double> weighed, alike;
+  std::optional<double> weighed;
+  std::optional<double> stated;  ///< what the weighed counter itself expects
+  std::optional<double> alike;   ///< by all rooms alike, as lively as they are
 };
 
-ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room, std::size_t own) {
-  std::vector<DayByRooms> days;
-  std::vector<double> scores(counter.rooms.size(), 0.0);
-  for (const counting::Stretch& day : room.days) {
-    days.push_back(by_each_room(counter, day));
-    for (std::size_t r = 0; r < scores.size(); ++r) scores[r] += days.back().log_likelihoods[r];
+/// A room's days, on average.
+double days_of_rooms(std::span<const PoolRoom> rooms) {
+  Mean days;
+  for (const PoolRoom& room : rooms) days.add(static_cast<double>(room.labelled.days.size()));
+  return days.value().value_or(1.0);
+}
+
+/// Known readings by those of a room's day: 0 to infinity.
+double days_of_log(std::span<const counting::Stretch> log, std::span<const PoolRoom> rooms) {
+  double known = 0.0;
+  for (const counting::Stretch& stretch : log) {
+    for (const counting::Reading& reading : counting::readings_of(stretch)) known += reading.known > 0 ? 1.0 : 0.0;
   }
-  scores[own] = -std::numeric_limits<double>::infinity();
-  Counter others = counter;
-  counting::weigh(others, scores);
-  const std::vector<double> weights = weights_of(others);
-  std::vector<double> alike(scores.size(), 1.0 / static_cast<double>(scores.size() - 1));
-  alike[own] = 0.0;
-  AbsoluteError weighed_error, alike_error;
-  for (std::size_t d = 0; d < days.size(); ++d) {
-    add_error(days[d].estimates, weights, room.days[d].people, counter.settings.step_s, weighed_error);
-    add_error(days[d].estimates, alike, room.days[d].people, counter.settings.step_s, alike_error);
+  Mean of_day;
+  for (const PoolRoom& room : rooms) {
+    for (const counting::Stretch& day : room.labelled.days) of_day.add(static_cast<double>(day.n_readings()));
   }
-  return {weighed_error.mean(), alike_error.mean()};
+  return known / of_day.value().value_or(1.0);
+}
+
+std::size_t n_versions(const Counter& counter) { return counter.settings.livelinesses.size(); }
+
+/// (rooms) those of their versions together.
+std::vector<double> room_weights(const Counter& counter) {
+  std::vector<double> weights(counter.rooms.size() / n_versions(counter), 0.0);
+  for (std::size_t i = 0; i < counter.rooms.size(); ++i) weights[i / n_versions(counter)] += counter.rooms[i].weight;
+  return weights;
+}
+
+/// What the log determined of how lively people are, whatever the room.
+ParameterRange liveliness_of(const Counter& counter) {
+  std::vector<double> odds;
+  for (const counting::RoomModel& room : counter.rooms) odds.push_back(room.liveliness);
+  const std::vector<double> weights = weights_of(counter), alike(odds.size(), 1.0);
+  return {"liveliness",
+          weighted_interval(odds, alike),
+          weighted_interval(odds, weights),
+          weighted_mean(odds, alike),
+          weighted_mean(odds, weights),
+          std::max(0.0, 1.0 - weighted_sd(odds, weights) / weighted_sd(odds, alike))};
+}
+
+/// The room's own models count nothing.
+ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room) {
+  std::vector<counting::Stretch> log = room.days;
+  for (counting::Stretch& day : log) day.people.clear();
+  std::vector<double> scores = counting::log_likelihoods(counter, log);
+  Counter weighed = counter, alike = counter;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const bool is_own = counter.rooms[i].number == room.number;
+    if (is_own) scores[i] = -std::numeric_limits<double>::infinity();
+    alike.rooms[i].weight = is_own || counter.rooms[i].liveliness != 1.0 ? 0.0 : 1.0;
+  }
+  counting::weigh(weighed, scores);
+  const auto n_others = static_cast<double>(std::ranges::count(alike.rooms, 1.0, &counting::RoomModel::weight));
+  for (counting::RoomModel& model : alike.rooms) model.weight /= n_others;
+  Mean weighed_error, statement, alike_error;
+  const double step_s = counter.settings.step_s;
+  for (std::size_t d = 0; d < log.size(); ++d) {
+    const Estimates told = counting::estimate(weighed, log[d], counting::Pass::smoothed);
+    add_error(told, room.days[d].people, step_s, weighed_error);
+    add_own_statement(told, step_s, statement);
+    add_error(counting::estimate(alike, log[d], counting::Pass::smoothed), room.days[d].people, step_s, alike_error);
+  }
+  return {weighed_error.value(), statement.value(), alike_error.value()};
 }
 
 /// Of row i from the mean of the others, by their covariance.
@@ -370,8 +404,8 @@ Interval told(const StatisticInfo& info, const Interval& values, double step_s) 
 }
 
 std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatistics& known,
-                                const std::vector<double>& of_log, const counting::Counter& counter) {
-  const std::vector<double> weights = weights_of(counter);
+                                const std::vector<double>& of_log, const std::vector<double>& weights,
+                                const counting::Counter& counter) {
   const double step_s = counter.settings.step_s;
   std::vector<double> own_weights;
   for (const std::size_t r : known.rooms) own_weights.push_back(weights[r]);
@@ -440,29 +474,31 @@ std::vector<bool> in_use(const std::vector<int>& people, double step_s) {
 RoomErrors errors_of_rooms(const Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
   RoomErrors errors;
   ordered_parallel<ErrorOfRoom>(
-      rooms.size(), threads, [&](std::size_t r) { return error_of_room(counter, rooms[r], r); },
+      rooms.size(), threads, [&](std::size_t r) { return error_of_room(counter, rooms[r]); },
       [&](ErrorOfRoom& one) {
         errors.weighed.push_back(one.weighed);
+        errors.stated.push_back(one.stated);
         errors.alike.push_back(one.alike);
       });
   return errors;
 }
 
-void expect_error(const RoomErrors& errors, std::span<const double> weights, Calibration& made) {
-  // Square roots of the weights: with the weights themselves, intervals were too narrow (83 of 100 rooms that were left
-  // out in turn; with their roots 90).
-  std::vector<double> weighed, alike, own_weights, roots;
+void expect_error(const RoomErrors& errors, std::span<const double> weights, double stated, Calibration& made) {
+  std::vector<double> weighed, alike, own_weights;
+  Mean statement;
   for (std::size_t r = 0; r < weights.size(); ++r) {
     if (!errors.weighed[r] || !errors.alike[r]) continue;
     weighed.push_back(*errors.weighed[r]);
     alike.push_back(*errors.alike[r]);
     own_weights.push_back(weights[r]);
-    roots.push_back(std::sqrt(weights[r]));
+    if (errors.stated[r]) statement.add(*errors.stated[r]);
   }
   if (weighed.empty()) return;
+  const double times = statement.value() && stated > *statement.value() ? stated / *statement.value() : 1.0;
+  for (double& error : weighed) error *= times;
   made.mean_error = weighted_mean(weighed, own_weights);
   made.error_alike = weighted_mean(alike, own_weights);
-  made.counter.expected_error = weighted_interval(weighed, roots);
+  made.counter.expected_error = weighted_interval(weighed, std::vector(weighed.size(), 1.0));
 }
 
 double unlike_share(const stats::Matrix<double>& rows, std::span<const double> vector) {
@@ -528,7 +564,7 @@ Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsi
   }
   std::vector<counting::LabelledRoom> labelled;
   for (const PoolRoom& room : rooms) labelled.push_back(room.labelled);
-  counting::Counter counter = counting::train(labelled, settings, threads);
+  counting::Counter counter = counting::at_livelinesses(counting::train(labelled, settings, threads));
   RoomErrors errors = errors_of_rooms(counter, labelled, threads);
   std::vector<DayStatistics> days = day_statistics(rooms, settings.step_s, threads);
   parts_ =
@@ -541,14 +577,25 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   const auto& [rooms, counter, errors, room_days] = *parts_;
   Calibration made;
   made.counter = counter;
-  const std::vector<double> scores = counting::log_likelihoods(counter, log);
+  std::vector<double> scores = counting::log_likelihoods(counter, log);
+  // Left-out rooms have shown what so many days say; more are taken to say no more, since they have the room in common.
+  const double times = std::min(1.0, days_of_rooms(rooms) / days_of_log(log, rooms));
+  for (double& score : scores) score *= times;
   counting::weigh(made.counter, scores);
-  const std::vector<double> weights = weights_of(made.counter);
+  Mean stated;
+  for (const Stretch& stretch : log)
+    add_own_statement(counting::estimate(made.counter, stretch, counting::Pass::smoothed), counter.settings.step_s,
+                      stated);
+  const std::vector<double> weights = room_weights(made.counter);
   made.effective_rooms = 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
-  for (std::size_t r = 0; r < rooms.size(); ++r)
-    made.rooms.push_back({rooms[r].labelled.number, scores[r], weights[r], errors.weighed[r]});
-  expect_error(errors, weights, made);
+  for (std::size_t r = 0; r < rooms.size(); ++r) {
+    const auto versions = std::span(scores).subspan(r * n_versions(counter), n_versions(counter));
+    made.rooms.push_back(
+        {rooms[r].labelled.number, *std::ranges::max_element(versions), weights[r], errors.weighed[r]});
+  }
+  expect_error(errors, weights, stated.value().value_or(0.0), made);
   made.parameters = parameter_ranges(rooms, weights);
+  if (n_versions(counter) > 1) made.parameters.insert(made.parameters.begin(), liveliness_of(made.counter));
   const DayStatistics log_days = motion_statistics(days, counter.settings.step_s);
   if (log_days.empty()) return made;
   const RoomStatistics known = room_statistics(room_days, log_days.size());
@@ -557,7 +604,7 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   made.p = unlike_share(known.rows, of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
   made.counter.warning = warning_of(made.verdict);
-  made.statistics = compared(rooms, known, of_log, made.counter);
+  made.statistics = compared(rooms, known, of_log, weights, made.counter);
   return made;
 }
 

@@ -29,15 +29,17 @@ inline constexpr int fewest_rooms = 10;  ///< that can be weighed
 
 // What error to expect: each room is calibrated and counted as if it were the real one.
 
-/// (rooms) mean absolute errors of a counter made of the other rooms' models, weighed by the room's own log, or alike.
+/// (rooms) mean absolute errors of smoothed counts by the other rooms' models, weighed by the room's own log, or alike;
+/// and what the weighed counter itself expects, by its probabilities.
 struct RoomErrors {
-  std::vector<std::optional<double>> weighed, alike;
+  std::vector<std::optional<double>> weighed, stated, alike;
 };
 [[nodiscard]] RoomErrors errors_of_rooms(const counting::Counter& counter,
                                          std::span<const counting::LabelledRoom> rooms, unsigned threads);
 
-/// Of the errors by weight: mean and interval.
-void expect_error(const RoomErrors& errors, std::span<const double> weights, Calibration& made);
+/// The mean of the rooms' errors by weight, and the interval of nine tenths of all rooms; both are larger where the
+/// counter itself expects more of the log (`stated`) than on average of the rooms.
+void expect_error(const RoomErrors& errors, std::span<const double> weights, double stated, Calibration& made);
 
 /// Readings that a score counts: from half an hour before the first person to half an hour after the last.
 [[nodiscard]] std::vector<bool> in_use(const std::vector<int>& people, double step_s);

@@ -279,10 +279,10 @@ std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, cons
   return phases;
 }
 
-/// The middle 90 % of a reading's counts.
+/// The fewest counts that have nine tenths of a reading's odds.
 Interval likely(const LogCounts& counts, std::size_t reading) {
-  return {static_cast<double>(counts.estimates.quantile(reading, 0.05)),
-          static_cast<double>(counts.estimates.quantile(reading, 0.95))};
+  const auto [least, most] = counts.estimates.band(reading, band_share);
+  return {static_cast<double>(least), static_cast<double>(most)};
 }
 
 io::SeriesChart chart_of(const LogCounts& counts, const CountedDay& day) {
@@ -435,7 +435,6 @@ std::string in_words(const CountError& error) {
 }
 
 std::string how_sure(const LogCounts& counts) {
-  constexpr double sure = 0.8;  // assumed: one of five such numbers may be another
   std::size_t n = 0, n_sure = 0, n_unknown = 0;
   for (std::size_t i = 0; i < counts.rows.n_windows(); ++i) {
     const int people = counts.estimates.count(i);

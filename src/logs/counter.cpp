@@ -118,19 +118,23 @@ Expected expected_of(const Counter& counter, const LabelledRoom& room, const Roo
   const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
   Expected expected{std::vector<double>(n * n, 0.0), std::vector<double>(n * n_symbols, 0.0),
                     std::vector<double>(n, 0.0)};
+  const RoomModel* const only = &model;
+  const Lanes<1> lane(counter, std::span(&only, 1));
+  std::vector<Lanes<1>::Values> moved(n * n);
   for (const Stretch& day : room.days) {
     const std::vector<Reading> readings = readings_of(day);
-    std::vector<double> beliefs = forward(counter, model, readings).beliefs;
-    smooth(counter, readings, beliefs, expected.moved);
+    std::vector<Lanes<1>::Values> beliefs = lane.forward(readings).beliefs;
+    lane.smooth(readings, beliefs, moved);
     for (std::size_t i = 0; i < readings.size(); ++i) {
       for (std::size_t state = 0; state < n; ++state) {
-        const double belief = beliefs[i * n + state];
+        const double belief = beliefs[i * n + state][0];
         expected.been[state] += belief;
         if (readings[i].known == counter.n_sensors)
           expected.seen[state * n_symbols + size(readings[i].active)] += belief;
       }
     }
   }
+  for (std::size_t i = 0; i < moved.size(); ++i) expected.moved[i] = moved[i][0];
   return expected;
 }
 
@@ -138,14 +142,27 @@ void add(std::vector<double>& sum, const std::vector<double>& more) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
 }
 
-/// One iteration: what is expected of all rooms, then what explains it best.
-std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> rooms,
-                            const std::vector<double>& moves_at_first, unsigned threads) {
-  const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
+std::vector<Expected> expected_of_all(const Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
   std::vector<Expected> each;
   ordered_parallel<Expected>(
       rooms.size(), threads, [&](std::size_t r) { return expected_of(counter, rooms[r], counter.rooms[r]); },
       [&](Expected& one) { each.push_back(std::move(one)); });
+  return each;
+}
+
+/// What was expected of a room, drawn to what all rooms have.
+std::vector<double> drawn_to(const std::vector<double>& all, std::vector<double> own, double shrinkage,
+                             std::size_t n_columns) {
+  for (std::size_t i = 0; i < all.size(); ++i) own[i] += shrinkage * all[i];
+  divide_rows(own, n_columns);
+  return own;
+}
+
+/// One iteration: what is expected of all rooms, then what explains it best, with moves that all rooms share.
+std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> rooms,
+                            const std::vector<double>& moves_at_first, unsigned threads) {
+  const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
+  std::vector<Expected> each = expected_of_all(counter, rooms, threads);
   constexpr double pseudo_count = 0.5;
   std::vector<double> been(n, 1e-6), seen(n * n_symbols, pseudo_count), moved = moves_at_first;
   for (double& move : moved) move *= least_move;
@@ -156,13 +173,21 @@ std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> room
   }
   divide_rows(moved, n);
   divide_rows(seen, n_symbols);
-  counter.moves = std::move(moved);
   for (std::size_t r = 0; r < each.size(); ++r) {
-    for (std::size_t i = 0; i < seen.size(); ++i) each[r].seen[i] += counter.settings.shrinkage * seen[i];
-    divide_rows(each[r].seen, n_symbols);
-    counter.rooms[r].emissions = std::move(each[r].seen);
+    counter.rooms[r].moves = moved;
+    counter.rooms[r].emissions = drawn_to(seen, std::move(each[r].seen), counter.settings.shrinkage, n_symbols);
   }
   return been;
+}
+
+/// Only when all else is learned: rooms that learn with moves of their own are surer of their modes than they are right
+/// (of 112 h that were told as 80 % sure .75 were right, instead of .81 of 61).
+void give_own_moves(Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
+  std::vector<Expected> each = expected_of_all(counter, rooms, threads);
+  for (std::size_t r = 0; r < each.size(); ++r) {
+    counter.rooms[r].moves = drawn_to(counter.rooms[r].moves, std::move(each[r].moved), counter.settings.shrinkage,
+                                      size(counter.n_states()));
+  }
 }
 
 /// A room's counts as often as they were there, each in modes as in all rooms.
@@ -200,18 +225,13 @@ void require_alike(std::span<const LabelledRoom> rooms) {
   if (counts_of(rooms) < 2) throw Error(ErrorCode::input, "nobody is in any of the rooms: there is nothing to learn");
 }
 
-/// Adds the probabilities of each count, whatever the mode.
-void add_counts(std::span<const double> beliefs, double weight, std::size_t modes, std::span<double> counts) {
-  for (std::size_t state = 0; state < beliefs.size(); ++state) counts[state / modes] += weight * beliefs[state];
-}
-
 constexpr double nobody_knows = std::numeric_limits<double>::quiet_NaN();
 constexpr double never_s = std::numeric_limits<double>::infinity();
 
 // A counter as JSON.
 
 using Json = nlohmann::ordered_json;
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 
 /// Probabilities in rows that add up to 1.
 std::vector<double> probabilities(const Json& json, std::size_t n_rows, std::size_t n_columns) {
@@ -282,8 +302,10 @@ const Json& member(const Json& json, const char* key) {
 }
 
 Counter counter_from(const Json& json) {
-  if (member(json, "pirsim_counter") != format_version)
-    throw std::domain_error("pirsim_counter: this pirsim reads version " + std::to_string(format_version));
+  const Json& version = member(json, "pirsim_counter");
+  const bool has_moves_in_common = version == 1;  // and rooms as lively as they are
+  if (!has_moves_in_common && version != format_version)
+    throw std::domain_error("pirsim_counter: this pirsim reads versions 1 and " + std::to_string(format_version));
   if (const auto model = json.find("model"); model != json.end())
     throw std::domain_error("it counts by another model than hidden Markov; pirsim.counting of Python counts with it");
   constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000;
@@ -295,17 +317,28 @@ Counter counter_from(const Json& json) {
   counter.n_sensors = whole(member(json, "sensors"), "sensors", 1, most_sensors);
   counter.n_counts = whole(member(json, "counts"), "counts", 2, most_counts);
   const std::size_t n = size(counter.n_states());
-  counter.moves = probabilities(member(json, "moves"), n, n);
   double weights = 0.0;
-  for (const Json& room : member(json, "rooms")) {
-    RoomModel& model = counter.rooms.emplace_back();
-    constexpr int most_rooms = 1'000'000'000;
-    model.number = whole(member(room, "room"), "room", 0, most_rooms);
-    model.weight = member(room, "weight").get<double>();
+  const auto add = [&](RoomModel model, const Json& told) {
+    model.weight = member(told, "weight").get<double>();
     if (!(model.weight >= 0.0)) throw std::domain_error("a weight is below 0");
     weights += model.weight;
+    model.emissions = emissions(member(told, "emissions"), n, size(counter.n_symbols()));
+    counter.rooms.push_back(std::move(model));
+  };
+  for (const Json& room : member(json, "rooms")) {
+    RoomModel model;
+    constexpr int most_rooms = 1'000'000'000;
+    model.number = whole(member(room, "room"), "room", 0, most_rooms);
     model.first = probabilities(member(room, "first"), 1, n);
-    model.emissions = emissions(member(room, "emissions"), n, size(counter.n_symbols()));
+    model.moves = probabilities(member(has_moves_in_common ? json : room, "moves"), n, n);
+    if (has_moves_in_common) {
+      add(std::move(model), room);
+      continue;
+    }
+    for (const Json& told : member(room, "versions")) {
+      model.liveliness = positive(member(told, "liveliness"), "liveliness");
+      add(model, told);
+    }
   }
   if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
   if (const auto error = json.find("expected_error"); error != json.end())
@@ -342,113 +375,205 @@ StateRange states_of(const Counter& counter, const Reading& reading) {
   return {count * modes, (count + 1) * modes};
 }
 
-void likelihood(const Counter& counter, std::span<const double> emissions, const Reading& reading,
-                std::vector<double>& out) {
-  const std::size_t n_symbols = size(counter.n_symbols());
-  const StateRange range = states_of(counter, reading);
-  out.assign(size(counter.n_states()), 0.0);
-  for (std::size_t state = range.begin; state < range.end; ++state) {
-    const std::span<const double> own = emissions.subspan(state * n_symbols, n_symbols);
-    if (reading.known == counter.n_sensors) {
-      out[state] = own[size(reading.active)];
-      continue;
-    }
-    const int unknown = counter.n_sensors - reading.known;
-    for (int all = reading.active; all <= reading.active + unknown; ++all) {
-      out[state] += own[size(all)] * choose(all, reading.active) *
-                    choose(counter.n_sensors - all, reading.known - reading.active) /
-                    choose(counter.n_sensors, reading.known);
-    }
+template <std::size_t n_lanes>
+Lanes<n_lanes>::Lanes(const Counter& counter, std::span<const RoomModel* const> rooms) : counter_(&counter) {
+  first_.resize(rooms.front()->first.size());
+  moves_.resize(rooms.front()->moves.size());
+  emissions_.resize(rooms.front()->emissions.size());
+  for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+    const RoomModel& room = *rooms[std::min(lane, rooms.size() - 1)];
+    for (std::size_t i = 0; i < first_.size(); ++i) first_[i][lane] = room.first[i];
+    for (std::size_t i = 0; i < moves_.size(); ++i) moves_[i][lane] = room.moves[i];
+    for (std::size_t i = 0; i < emissions_.size(); ++i) emissions_[i][lane] = room.emissions[i];
   }
 }
 
-double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
-            const Reading& reading, std::span<double> after) {
-  const std::size_t n = size(counter.n_states());
-  const StateRange range = states_of(counter, reading);
-  std::vector<double> seen;
-  likelihood(counter, room.emissions, reading, seen);
-  std::ranges::fill(after, 0.0);
-  if (before.empty()) std::ranges::copy(room.first, after.begin());
-  for (std::size_t from = range_before.begin; from < range_before.end && !before.empty(); ++from) {
-    for (std::size_t to = range.begin; to < range.end; ++to) after[to] += before[from] * counter.moves[from * n + to];
+template <std::size_t n_lanes>
+auto Lanes<n_lanes>::likelihood(std::size_t state, const Reading& reading) const -> Values {
+  const std::span<const Values> own(emissions_.data() + state * size(counter_->n_symbols()),
+                                    size(counter_->n_symbols()));
+  if (reading.known == counter_->n_sensors) return own[size(reading.active)];
+  const int unknown = counter_->n_sensors - reading.known;
+  Values sum{};
+  for (int all = reading.active; all <= reading.active + unknown; ++all) {
+    const double ways = choose(all, reading.active) *
+                        choose(counter_->n_sensors - all, reading.known - reading.active) /
+                        choose(counter_->n_sensors, reading.known);
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) sum[lane] += own[size(all)][lane] * ways;
   }
-  for (std::size_t state = 0; state < n; ++state) after[state] *= seen[state];
+  return sum;
+}
+
+namespace {
+
+/// Every lane adds up to 1; what they added up to is returned.
+template <std::size_t n_lanes>
+std::array<double, n_lanes> normalize(std::span<std::array<double, n_lanes>> states) {
+  std::array<double, n_lanes> sum{};
+  for (const auto& state : states) {
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) sum[lane] += state[lane];
+  }
+  for (auto& state : states) {
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) state[lane] /= sum[lane];
+  }
+  return sum;
+}
+
+}  // namespace
+
+template <std::size_t n_lanes>
+auto Lanes<n_lanes>::step(std::span<const Values> before, StateRange range_before, const Reading& reading,
+                          std::span<Values> after) const -> Values {
+  const std::size_t n = size(counter_->n_states());
+  const StateRange range = states_of(*counter_, reading);
+  std::ranges::fill(after, Values{});
+  for (std::size_t to = range.begin; to < range.end; ++to) {
+    Values sum = before.empty() ? first_[to] : Values{};
+    for (std::size_t from = range_before.begin; from < range_before.end && !before.empty(); ++from) {
+      const Values& move = moves_[from * n + to];
+      for (std::size_t lane = 0; lane < n_lanes; ++lane) sum[lane] += before[from][lane] * move[lane];
+    }
+    const Values seen = likelihood(to, reading);
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) after[to][lane] = sum[lane] * seen[lane];
+  }
   return normalize(after);
 }
 
-ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings) {
-  const std::size_t n = size(counter.n_states());
-  ForwardPass pass{std::vector<double>(readings.size() * n), 0.0};
-  std::span<const double> before;
+template <std::size_t n_lanes>
+auto Lanes<n_lanes>::forward(std::span<const Reading> readings) const -> Passed {
+  const std::size_t n = size(counter_->n_states());
+  Passed passed{std::vector<Values>(readings.size() * n), {}};
+  std::span<const Values> before;
   StateRange range;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    const std::span<double> now(pass.beliefs.data() + i * n, n);
-    pass.log_likelihood += std::log(step(counter, room, before, range, readings[i], now));
+    const std::span<Values> now(passed.beliefs.data() + i * n, n);
+    const Values likelihoods = step(before, range, readings[i], now);
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) passed.log_likelihoods[lane] += std::log(likelihoods[lane]);
     before = now;
-    range = states_of(counter, readings[i]);
+    range = states_of(*counter_, readings[i]);
   }
-  return pass;
+  return passed;
 }
 
-void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
-            std::span<double> moved) {
-  const std::size_t n = size(counter.n_states());
+template <std::size_t n_lanes>
+void Lanes<n_lanes>::smooth(std::span<const Reading> readings, std::span<Values> beliefs,
+                            std::span<Values> moved) const {
+  const std::size_t n = size(counter_->n_states());
   constexpr double most_ratio = 1e290;  // finite, however sure the past was of what the future refutes
-  std::vector<double> ratio(n);         // of what is believed of the next reading to what was expected of it
+  std::vector<Values> ratio(n);         // of what is believed of the next reading to what was expected of it
   for (std::size_t i = readings.size() < 2 ? 0 : readings.size() - 1; i-- > 0;) {
-    const std::span<double> now(beliefs.data() + i * n, n), next(beliefs.data() + (i + 1) * n, n);
-    const StateRange range = states_of(counter, readings[i]), after = states_of(counter, readings[i + 1]);
-    std::ranges::fill(ratio, 0.0);
-    for (std::size_t from = range.begin; from < range.end; ++from) {
-      for (std::size_t to = after.begin; to < after.end; ++to) ratio[to] += now[from] * counter.moves[from * n + to];
-    }
-    for (std::size_t to = after.begin; to < after.end; ++to)
-      ratio[to] = next[to] > 0.0 ? std::min(next[to] / ratio[to], most_ratio) : 0.0;
-    for (std::size_t from = range.begin; from < range.end; ++from) {
-      double later = 0.0;
-      for (std::size_t to = after.begin; to < after.end; ++to) {
-        const double factor = counter.moves[from * n + to] * ratio[to];
-        later += factor;
-        if (!moved.empty()) moved[from * n + to] += now[from] * factor;
+    const std::span<Values> now = beliefs.subspan(i * n, n), next = beliefs.subspan((i + 1) * n, n);
+    const StateRange range = states_of(*counter_, readings[i]), after = states_of(*counter_, readings[i + 1]);
+    for (std::size_t to = after.begin; to < after.end; ++to) {
+      Values expected{};
+      for (std::size_t from = range.begin; from < range.end; ++from) {
+        const Values& move = moves_[from * n + to];
+        for (std::size_t lane = 0; lane < n_lanes; ++lane) expected[lane] += now[from][lane] * move[lane];
       }
-      now[from] *= later;
+      for (std::size_t lane = 0; lane < n_lanes; ++lane)
+        ratio[to][lane] = next[to][lane] > 0.0 ? std::min(next[to][lane] / expected[lane], most_ratio) : 0.0;
+    }
+    for (std::size_t from = range.begin; from < range.end; ++from) {
+      Values later{};
+      for (std::size_t to = after.begin; to < after.end; ++to) {
+        const Values& move = moves_[from * n + to];
+        for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+          const double factor = move[lane] * ratio[to][lane];
+          later[lane] += factor;
+          if (!moved.empty()) moved[from * n + to][lane] += now[from][lane] * factor;
+        }
+      }
+      for (std::size_t lane = 0; lane < n_lanes; ++lane) now[from][lane] *= later[lane];
     }
     normalize(now);
   }
 }
 
+template class Lanes<1>;
+template class Lanes<side_by_side>;
+
 Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads) {
   require_alike(rooms);
-  Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}, {}};
+  Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}};
   const std::vector<double> moves_at_first = first_moves(counter, rooms);
-  counter.moves = moves_at_first;
   const std::vector<double> emissions = first_emissions(counter, rooms);
   const std::vector<double> anywhere(size(counter.n_states()), 1.0 / counter.n_states());
   for (const LabelledRoom& room : rooms)
-    counter.rooms.push_back({room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, emissions});
+    counter.rooms.push_back(
+        {room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, moves_at_first, emissions});
   std::vector<double> been = anywhere;
   for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, moves_at_first, threads);
   for (std::size_t r = 0; r < rooms.size(); ++r) counter.rooms[r].first = first_of(counter, rooms[r], been);
+  give_own_moves(counter, rooms, threads);
   return counter;
+}
+
+namespace {
+
+using Block = Lanes<side_by_side>;
+
+/// Calls visit(lanes, numbers of their models) until all these models had their turn.
+template <typename Visit>
+void each_block(const Counter& counter, std::span<const std::size_t> numbers, const Visit& visit) {
+  std::array<const RoomModel*, side_by_side> rooms{};
+  for (std::size_t first = 0; first < numbers.size(); first += side_by_side) {
+    const std::span<const std::size_t> own = numbers.subspan(first, std::min(side_by_side, numbers.size() - first));
+    for (std::size_t lane = 0; lane < own.size(); ++lane) rooms[lane] = &counter.rooms[own[lane]];
+    visit(Block(counter, std::span(rooms).first(own.size())), own);
+  }
+}
+
+/// Numbers of the models that have something to say.
+std::vector<std::size_t> weighty(const Counter& counter) {
+  std::vector<std::size_t> numbers;
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    if (counter.rooms[r].weight > 0.0) numbers.push_back(r);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+Counter at_livelinesses(const Counter& counter) {
+  const std::size_t modes = size(counter.settings.modes), n_symbols = size(counter.n_symbols());
+  Counter all = counter;
+  all.rooms.clear();
+  for (const RoomModel& room : counter.rooms) {
+    for (const double odds : counter.settings.livelinesses) {
+      RoomModel& version = all.rooms.emplace_back(room);
+      version.weight = room.weight / static_cast<double>(counter.settings.livelinesses.size());
+      version.liveliness = odds;
+      for (std::size_t i = modes * n_symbols; i < version.emissions.size(); ++i)
+        version.emissions[i] *= std::pow(odds, static_cast<double>(i % n_symbols));
+      divide_rows(version.emissions, n_symbols);
+    }
+  }
+  return all;
 }
 
 std::vector<double> log_likelihoods(const Counter& counter, std::span<const Stretch> stretches) {
   std::vector<double> sums(counter.rooms.size(), 0.0);
+  std::vector<std::size_t> all(sums.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   for (const Stretch& stretch : stretches) {
     const std::vector<Reading> readings = readings_of(stretch);
-    for (std::size_t r = 0; r < sums.size(); ++r)
-      sums[r] += forward(counter, counter.rooms[r], readings).log_likelihood;
+    each_block(counter, all, [&](const Block& block, std::span<const std::size_t> numbers) {
+      const Block::Values told = block.forward(readings).log_likelihoods;
+      for (std::size_t lane = 0; lane < numbers.size(); ++lane) sums[numbers[lane]] += told[lane];
+    });
   }
   return sums;
 }
 
 void weigh(Counter& counter, std::span<const double> log_likelihoods) {
+  constexpr double hardly_any =
+      1e-4;  // of the weightiest: together they would move a probability by a hundredth at most
   const double most = *std::ranges::max_element(log_likelihoods);
   double sum = 0.0;
   for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
     RoomModel& room = counter.rooms[r];
-    room.weight = std::exp(counter.settings.weight_power * (log_likelihoods[r] - most));
+    const double weight = std::exp(counter.settings.weight_power * (log_likelihoods[r] - most));
+    room.weight = weight < hardly_any ? 0.0 : weight;
     sum += room.weight;
   }
   for (RoomModel& room : counter.rooms) room.weight /= sum;
@@ -479,16 +604,34 @@ int Estimates::quantile(std::size_t reading, double share) const {
   return n_counts - 1;
 }
 
+Estimates::Band Estimates::band(std::size_t reading, double share) const {
+  constexpr double rounding = 1e-9;
+  for (int width = 1; width < n_counts; ++width) {
+    double most = 0.0;
+    Band best;
+    for (int least = 0; least + width <= n_counts; ++least) {
+      const double odds = std::accumulate(probabilities.begin() + reading * size(n_counts) + least,
+                                          probabilities.begin() + reading * size(n_counts) + least + width, 0.0);
+      if (odds > most) most = odds, best = {least, least + width - 1};
+    }
+    if (most >= share - rounding) return best;
+  }
+  return {0, n_counts - 1};
+}
+
 Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
   const std::vector<Reading> readings = readings_of(stretch);
   const std::size_t modes = size(counter.settings.modes);
   Estimates mixed{counter.n_counts, std::vector<double>(readings.size() * size(counter.n_counts), 0.0)};
-  for (const RoomModel& room : counter.rooms) {
-    if (!(room.weight > 0.0)) continue;
-    std::vector<double> own = forward(counter, room, readings).beliefs;
-    if (pass == Pass::smoothed) smooth(counter, readings, own);
-    add_counts(own, room.weight, modes, mixed.probabilities);
-  }
+  each_block(counter, weighty(counter), [&](const Block& block, std::span<const std::size_t> numbers) {
+    Block::Passed passed = block.forward(readings);
+    if (pass == Pass::smoothed) block.smooth(readings, passed.beliefs);
+    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+      const double weight = counter.rooms[numbers[lane]].weight;
+      for (std::size_t i = 0; i < passed.beliefs.size(); ++i)
+        mixed.probabilities[i / modes] += weight * passed.beliefs[i][lane];
+    }
+  });
   const std::vector<char> told = told_readings(stretch, counter.settings.step_s, pass);
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (told[i] == 0)
@@ -506,15 +649,22 @@ std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
     throw Error(ErrorCode::usage, "expected " + std::to_string(counter.n_sensors) + " bits, one a sensor, got " +
                                       std::to_string(bits.size()));
   }
-  const std::size_t n = size(counter.n_states());
+  const std::size_t n = size(counter.n_states()), modes = size(counter.settings.modes);
   const Reading reading = readings_of({counter.n_sensors, {bits.begin(), bits.end()}}).front();
   std::vector<double> counts(size(counter.n_counts), 0.0), next(counter.rooms.size() * n);
-  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
-    const std::span<const double> before = belief_.empty() ? std::span<double>() : std::span(belief_).subspan(r * n, n);
-    const std::span<double> now = std::span(next).subspan(r * n, n);
-    static_cast<void>(step(counter, counter.rooms[r], before, {0, n}, reading, now));
-    add_counts(now, counter.rooms[r].weight, size(counter.settings.modes), counts);
-  }
+  std::vector<Block::Values> before, after(n);
+  each_block(counter, weighty(counter), [&](const Block& block, std::span<const std::size_t> numbers) {
+    before.resize(belief_.empty() ? 0 : n);
+    for (std::size_t i = 0; i < before.size() * numbers.size(); ++i)
+      before[i % n][i / n] = belief_[numbers[i / n] * n + i % n];
+    block.step(before, {0, n}, reading, after);
+    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+      for (std::size_t state = 0; state < n; ++state) {
+        next[numbers[lane] * n + state] = after[state][lane];
+        counts[state / modes] += counter.rooms[numbers[lane]].weight * after[state][lane];
+      }
+    }
+  });
   belief_ = std::move(next);
   unknown_s_ = reading.known > 0 ? 0.0 : unknown_s_ + counter.settings.step_s;
   if (unknown_s_ > longest_guess_s) std::ranges::fill(counts, nobody_knows);
@@ -523,13 +673,16 @@ std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
 
 void write_counter(const std::filesystem::path& file, const Counter& counter) {
   Json rooms = Json::array();
-  for (const RoomModel& room : counter.rooms) {
-    rooms.push_back(
-        {{"room", room.number}, {"weight", room.weight}, {"first", room.first}, {"emissions", room.emissions}});
+  for (const RoomModel& model : counter.rooms) {
+    if (!(model.weight > 0.0)) continue;
+    if (rooms.empty() || rooms.back()["room"] != model.number)
+      rooms.push_back(
+          {{"room", model.number}, {"first", model.first}, {"moves", model.moves}, {"versions", Json::array()}});
+    rooms.back()["versions"].push_back(
+        {{"liveliness", model.liveliness}, {"weight", model.weight}, {"emissions", model.emissions}});
   }
   Json json{{"pirsim_counter", format_version}, {"step_s", counter.settings.step_s}, {"modes", counter.settings.modes},
-            {"sensors", counter.n_sensors},     {"counts", counter.n_counts},        {"moves", counter.moves},
-            {"rooms", std::move(rooms)}};
+            {"sensors", counter.n_sensors},     {"counts", counter.n_counts},        {"rooms", std::move(rooms)}};
   if (!counter.warning.empty()) json["warning"] = counter.warning;
   if (!counter.sensors.empty()) json["sensor_names"] = counter.sensors;
   for (const std::optional<double>& hold_s : counter.holds_s)

@@ -1,6 +1,7 @@
 // The two passes over a hidden Markov model.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -24,23 +25,42 @@ struct StateRange {
 };
 [[nodiscard]] StateRange states_of(const Counter& counter, const Reading& reading);
 
-/// (states) likelihood of a reading, 0 where it isn't possible. Where some sensors are unknown: each choice of sensors
-/// is as likely to be the known one.
-void likelihood(const Counter& counter, std::span<const double> emissions, const Reading& reading,
-                std::vector<double>& out);
+/// Models that go through the same readings side by side, a lane each. No lane's numbers depend on the others', so that
+/// a room's are the same bits whatever stands beside it.
+template <std::size_t n_lanes>
+class Lanes {
+ public:
+  using Values = std::array<double, n_lanes>;
 
-struct ForwardPass {
-  std::vector<double> beliefs;  ///< (readings x states)
-  double log_likelihood = 0.0;
+  /// rooms: at most n_lanes; the last one fills the lanes that are left. The counter outlives it.
+  Lanes(const Counter& counter, std::span<const RoomModel* const> rooms);
+
+  struct Passed {
+    std::vector<Values> beliefs;  ///< (readings x states)
+    Values log_likelihoods{};
+  };
+  [[nodiscard]] Passed forward(std::span<const Reading> readings) const;
+  /// Forward beliefs become those that know what came after. moved, if not empty: (states x states), to which the
+  /// expected number of each move is added.
+  void smooth(std::span<const Reading> readings, std::span<Values> beliefs, std::span<Values> moved = {}) const;
+  /// One step: beliefs (states) before a reading, of which these states were possible, to those after it, of which the
+  /// likelihoods are returned. before: empty at the first.
+  Values step(std::span<const Values> before, StateRange range_before, const Reading& reading,
+              std::span<Values> after) const;
+
+ private:
+  /// Likelihood of a reading in a state. Where some sensors are unknown: each choice of sensors is as likely to be the
+  /// known one.
+  [[nodiscard]] Values likelihood(std::size_t state, const Reading& reading) const;
+
+  const Counter* counter_;
+  std::vector<Values> first_;      ///< (states)
+  std::vector<Values> moves_;      ///< (states x states)
+  std::vector<Values> emissions_;  ///< (states x symbols)
 };
-[[nodiscard]] ForwardPass forward(const Counter& counter, const RoomModel& room, std::span<const Reading> readings);
-/// Forward beliefs become those that know what came after. moved, if not empty: (states x states), to which the
-/// expected number of each move is added.
-void smooth(const Counter& counter, std::span<const Reading> readings, std::vector<double>& beliefs,
-            std::span<double> moved = {});
-/// One step: belief before a reading to that after it, of which the likelihood is returned. before: empty at the first.
-double step(const Counter& counter, const RoomModel& room, std::span<const double> before, StateRange range_before,
-            const Reading& reading, std::span<double> after);
+extern template class Lanes<1>;  // rooms that are learned from, each with readings of its own
+inline constexpr std::size_t side_by_side = 4;
+extern template class Lanes<side_by_side>;
 
 /// Rows that add up to 1.
 void divide_rows(std::span<double> table, std::size_t n_columns);

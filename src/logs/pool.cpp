@@ -264,7 +264,7 @@ Calibration weigh_rooms(const fs::path& folder, const WeighingLog& log, const Lo
                         const counting::Settings& settings, unsigned threads) {
   const Pool pool(read_pool(folder, static_cast<int>(log.rows.sensors.size()), settings.step_s, threads), settings,
                   threads);
-  Calibration made = pool.calibrate(std::vector{whole_log(log.rows)}, days.whole);
+  Calibration made = pool.calibrate(days.each, days.whole);
   remember(log.traits, made.counter);
   return made;
 }
@@ -308,7 +308,8 @@ LogDays days_of(const LogRows& rows, const Interval& hours) {
     if (static_cast<double>(least_known(day)) < least_share * whole)
       days.partial.push_back(date);
     else
-      days.whole.push_back(std::move(day));
+      days.whole.push_back(day);
+    days.each.push_back(std::move(day));
   }
   return days;
 }

@@ -1,6 +1,7 @@
-// The first table of docs/counting.md, as CSV: pirsim_own_room_data POOL TARGETS...
+// The tables of docs/counting.md, as CSV: pirsim_own_room_data POOL TARGETS...
 // POOL and TARGETS are datasets (docs/counting.md says of which recipes), with two sensors in each room. Of the targets
 // NAME:odd stands for the first sixty rooms of NAME with sensors that died, a cat, and a fan.
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iostream>
@@ -54,34 +55,66 @@ double error_of(const Counter& counter, std::span<const Stretch> days, Pass pass
   });
 }
 
-/// One person if any sensor reported motion in the last five minutes.
-double error_of_yardstick(std::span<const Stretch> days) {
-  return mean_error(days, [](const Stretch& day) {
-    constexpr std::size_t readings = 10;
-    std::vector<int> counts;
-    std::size_t quiet_for = readings;
-    for (std::size_t i = 0; i < day.n_readings(); ++i) {
+/// So many people if any sensor reported motion within the last readings, or before and after a shorter pause.
+double error_of_any(std::span<const Stretch> days, int people, std::size_t last_readings, std::size_t pause = 0) {
+  return mean_error(days, [&](const Stretch& day) {
+    std::vector<int> counts(day.n_readings(), 0);
+    std::size_t quiet_for = std::max(last_readings, pause);  // before the first motion
+    for (std::size_t i = 0; i < counts.size(); ++i) {
       const bool motion = day.motion[n_sensors * i] == 1 || day.motion[n_sensors * i + 1] == 1;
+      if (motion && quiet_for < pause)
+        std::fill_n(counts.begin() + static_cast<std::ptrdiff_t>(i - quiet_for), quiet_for, people);
       quiet_for = motion ? 0 : quiet_for + 1;
-      counts.push_back(quiet_for < readings ? 1 : 0);
+      if (quiet_for < last_readings) counts[i] = people;
     }
     return counts;
   });
 }
 
+/// How often what is told of readings holds: "80 % sure" of somebody, and the band of nine in ten while somebody is
+/// there.
+struct Held {
+  int sure = 0, sure_right = 0, occupied = 0, in_band = 0;
+};
+Held held_of(const Counter& counter, std::span<const Stretch> days) {
+  Held held;
+  for (const Stretch& day : days) {
+    Stretch bare = day;
+    bare.people.clear();
+    const counting::Estimates told = counting::estimate(counter, bare, Pass::smoothed);
+    for (std::size_t i = 0; i < day.n_readings(); ++i) {
+      const int count = told.count(i);
+      const double odds =
+          told.probabilities[i * static_cast<std::size_t>(told.n_counts) + static_cast<std::size_t>(count)];
+      if (count > 0 && odds >= calibrate::sure) ++held.sure, held.sure_right += count == day.people[i] ? 1 : 0;
+      if (day.people[i] == 0) continue;
+      const auto band = told.band(i, calibrate::band_share);
+      ++held.occupied;
+      held.in_band += band.least <= day.people[i] && day.people[i] <= band.most ? 1 : 0;
+    }
+  }
+  return held;
+}
+
+/// By a log of all days but the last, which is scored, and by one of all days, which all are.
 void tell(const std::string& name, int room, const calibrate::Pool& pool, const std::vector<Stretch>& days) {
   if (days.size() < 2) return;
-  for (const std::size_t n_log : {std::size_t{1}, days.size()}) {
+  constexpr std::size_t five_min = 10, fifteen_min = 30;
+  for (const std::size_t n_log : {days.size() - 1, days.size()}) {
     const std::vector<Stretch> log = unlabelled({days.begin(), days.begin() + static_cast<std::ptrdiff_t>(n_log)});
     const calibrate::Calibration made = pool.calibrate(log, log);
+    const auto scored = std::span<const Stretch>(days).subspan(n_log == days.size() ? 0 : n_log);
     Counter alike = made.counter;
-    for (counting::RoomModel& model : alike.rooms) model.weight = 1.0 / static_cast<double>(alike.rooms.size());
-    const std::span<const Stretch> later = std::span(days).subspan(1);
-    const double truth = error_of(made.counter, n_log == 1 ? later : std::span(days), Pass::forward);
-    std::cout << name << ',' << room << ',' << n_log << ',' << error_of_yardstick(later) << ','
-              << error_of(alike, later, Pass::forward) << ',' << error_of(made.counter, later, Pass::forward) << ','
-              << error_of(made.counter, later, Pass::smoothed) << ',' << made.p << ','
-              << (made.counter.expected_error && made.counter.expected_error->contains(truth) ? 1 : 0) << '\n';
+    for (counting::RoomModel& model : alike.rooms) model.weight = model.liveliness == 1.0 ? 1.0 : 0.0;
+    for (counting::RoomModel& model : alike.rooms) model.weight /= static_cast<double>(pool.rooms().size());
+    const double smoothed = error_of(made.counter, scored, Pass::smoothed);
+    const Held held = held_of(made.counter, scored);
+    std::cout << name << ',' << room << ',' << n_log;
+    for (const int people : {1, 2, 3}) std::cout << ',' << error_of_any(scored, people, five_min);
+    std::cout << ',' << error_of_any(scored, 2, five_min, fifteen_min) << ',' << error_of(alike, scored, Pass::smoothed)
+              << ',' << error_of(made.counter, scored, Pass::forward) << ',' << smoothed << ',' << held.sure << ','
+              << held.sure_right << ',' << held.occupied << ',' << held.in_band << ',' << made.p << ','
+              << (made.counter.expected_error && made.counter.expected_error->contains(smoothed) ? 1 : 0) << '\n';
   }
 }
 
@@ -109,7 +142,9 @@ std::vector<std::pair<std::string, std::vector<Stretch>>> odd_days(const std::ve
 
 void run(std::span<char*> arguments) {
   const calibrate::Pool pool(calibrate::read_pool(arguments[0], n_sensors, step_s));
-  std::cout << "set,room,log_days,yardstick,alike,weighed,smoothed,p,interval_holds\n";
+  std::cout
+      << "set,room,log_days,any_1,any_2,any_3,any_2_closed,alike,forward,smoothed,sure,sure_right,occupied,in_band,p,"
+         "stated_holds\n";
   constexpr const char* odd = ":odd";
   for (const std::string name : arguments.subspan(1)) {
     const bool is_odd = name.ends_with(odd);

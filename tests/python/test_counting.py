@@ -17,13 +17,26 @@ SHAPES = [(1, 2, 1), (2, 3, 2), (3, 2, 2), (4, 2, 3)]  # sensors, counts, modes
 
 
 def random_counter(shape, seed=0, n_rooms=3):
+    """The second room at two livelinesses."""
     n_sensors, n_counts, modes = shape
     rng, n = np.random.default_rng([seed, *shape]), n_counts * modes
-    rooms = [{"room": r + 1, "weight": float(weight), "first": rng.dirichlet(np.ones(n)).tolist(),
-              "emissions": rng.dirichlet(np.ones(n_sensors + 1), n).ravel().tolist()}
-             for r, weight in enumerate(rng.dirichlet(np.ones(n_rooms)))]
-    return {"pirsim_counter": 1, "step_s": 30.0, "modes": modes, "sensors": n_sensors, "counts": n_counts,
-            "moves": rng.dirichlet(np.ones(n), n).ravel().tolist(), "rooms": rooms, "expected_error": [0.25, 0.5]}
+    weights = rng.dirichlet(np.ones(n_rooms + 1)).tolist()
+
+    def version(liveliness):
+        return {"liveliness": liveliness, "weight": weights.pop(),
+                "emissions": rng.dirichlet(np.ones(n_sensors + 1), n).ravel().tolist()}
+
+    rooms = [{"room": r + 1, "first": rng.dirichlet(np.ones(n)).tolist(),
+              "moves": rng.dirichlet(np.ones(n), n).ravel().tolist(),
+              "versions": [version(liveliness) for liveliness in ((0.5, 2.0) if r == 1 else (1.0,))]}
+             for r in range(n_rooms)]
+    return {"pirsim_counter": 2, "step_s": 30.0, "modes": modes, "sensors": n_sensors, "counts": n_counts,
+            "rooms": rooms, "expected_error": [0.25, 0.5]}
+
+
+def models_of(saved):
+    """(room, version) of each model."""
+    return [(room, version) for room in saved["rooms"] for version in room["versions"]]
 
 
 def random_bits(n, n_sensors, seed=0, unknown=0.2):
@@ -57,10 +70,9 @@ def likelihood_of(emission, bits):
 def by_all_paths(saved, bits):
     """Smoothed and, of the last reading, forward probabilities: each is a share of all paths through the states."""
     n, modes = saved["counts"] * saved["modes"], saved["modes"]
-    moves = np.reshape(saved["moves"], (n, n))
     smoothed, last = np.zeros((len(bits), saved["counts"])), np.zeros(saved["counts"])
-    for room in saved["rooms"]:
-        emissions = np.reshape(room["emissions"], (n, -1))
+    for room, version in models_of(saved):
+        emissions, moves = np.reshape(version["emissions"], (n, -1)), np.reshape(room["moves"], (n, n))
         seen = np.array([[likelihood_of(row, reading) for row in emissions] for reading in bits])
         own = np.zeros_like(smoothed)
         for path in itertools.product(range(n), repeat=len(bits)):
@@ -69,8 +81,8 @@ def by_all_paths(saved, bits):
             for i, state in enumerate(path):
                 own[i, state // modes] += p
         own /= own.sum(axis=1, keepdims=True)
-        smoothed += room["weight"] * own
-        last += room["weight"] * own[-1]
+        smoothed += version["weight"] * own
+        last += version["weight"] * own[-1]
     return smoothed, last
 
 
@@ -129,10 +141,11 @@ def test_what_is_saved_is_read_back(load, tmp_path):
     counter.save(tmp_path / "again.json")
     assert json.loads((tmp_path / "again.json").read_text()) == saved
     assert (counter.step_s, counter.modes, counter.n_sensors, counter.n_counts) == (30.0, 2, 2, 3)
-    assert counter.expected_error == (0.25, 0.5) and counter.moves.ravel().tolist() == saved["moves"]
-    for room, own in zip(counter.rooms, saved["rooms"]):
-        assert (room.number, room.weight) == (own["room"], own["weight"])
-        assert room.first.tolist() == own["first"] and room.emissions.ravel().tolist() == own["emissions"]
+    assert counter.expected_error == (0.25, 0.5) and len(counter.rooms) == 4
+    for room, (own, version) in zip(counter.rooms, models_of(saved)):
+        assert (room.number, room.weight, room.liveliness) == (own["room"], version["weight"], version["liveliness"])
+        assert room.first.tolist() == own["first"] and room.emissions.ravel().tolist() == version["emissions"]
+        assert room.moves.ravel().tolist() == own["moves"]
     assert counter.weights.tolist() == [room.weight for room in counter.rooms]
     live = counter.live()  # outlives who made it
     del counter
@@ -149,6 +162,12 @@ def changed_room(**changes):
     return saved
 
 
+def changed_version(**changes):
+    saved = random_counter((2, 3, 2))
+    saved["rooms"][0]["versions"][0].update(changes)
+    return saved
+
+
 def without(key):
     return {name: value for name, value in random_counter((2, 3, 2)).items() if name != key}
 
@@ -156,18 +175,18 @@ def without(key):
 HOSTILE = [
     ("not JSON", "isn't a counter: "), ("", "isn't a counter: "), ("[]", "pirsim_counter is missing"),
     ("[" * 100_000, "isn't a counter"), ("7", "pirsim_counter is missing"),
-    (changed(pirsim_counter=2), "this pirsim reads version 1"), (changed(model="forest"), "by another model"),
-    (without("moves"), "moves is missing"), (without("rooms"), "rooms is missing"),
+    (changed(pirsim_counter=3), "this pirsim reads versions 1 and 2"), (changed(model="forest"), "by another model"),
+    (changed(pirsim_counter=1), "moves is missing"), (without("rooms"), "rooms is missing"),
     (changed(sensors=3), "another size"), (changed(counts=4), "another size"), (changed(modes=1), "another size"),
     (changed(modes=2.5), "modes isn't a whole number"), (changed(counts=10**30), "counts isn't a whole number"),
     (changed(sensors=0), "sensors isn't a whole number"), (changed(modes="two"), "modes isn't a whole number"),
     (changed(step_s=0), "step_s isn't above 0"), (changed(step_s="30"), "isn't a counter as it should be"),
-    (changed(moves="none"), "isn't a list of numbers"), (changed(moves=[True] * 36), "isn't a list of numbers"),
-    (changed(moves=[0.2] * 36), "don't add up to 1"), (changed(moves=[2.0, -1.0, 0, 0, 0, 0] * 6), "between 0 and 1"),
+    (changed_room(moves="none"), "isn't a list of numbers"), (changed_room(moves=[True] * 36), "isn't a list of numbers"),
+    (changed_room(moves=[0.2] * 36), "don't add up to 1"), (changed_room(moves=[2.0, -1.0, 0, 0, 0, 0] * 6), "between 0 and 1"),
     (changed(rooms=[]), "weights don't add up to 1"), (changed(rooms=[5]), "room is missing"),
-    (changed_room(weight=-0.5), "a weight is below 0"), (changed_room(weight=0.9), "weights don't add up to 1"),
-    (changed_room(first=[0.5] * 6), "don't add up to 1"), (changed_room(emissions=[1.0, 0.0, 0.0] * 6), "is below 1e-100"),
-    (changed_room(emissions=[1.0, 5e-324, 0.0] * 6), "is below 1e-100"), (changed(sensor_names=["a"]), "another number of"),
+    (changed_version(weight=-0.5), "a weight is below 0"), (changed_version(weight=0.9), "weights don't add up to 1"),
+    (changed_room(first=[0.5] * 6), "don't add up to 1"), (changed_version(emissions=[1.0, 0.0, 0.0] * 6), "is below 1e-100"),
+    (changed_version(emissions=[1.0, 5e-324, 0.0] * 6), "is below 1e-100"), (changed(sensor_names=["a"]), "another number of"),
     (changed(sensor_names=["a", "a"]), "'a' twice"), (changed(sensor_names=[1, 2]), "isn't a counter as it should be"),
     (changed(holds_s=[-1, None]), "below 0"), (changed(holds_s=[1.0]), "another number of"),
     (changed(expected_error=3), "isn't a counter as it should be"),
@@ -188,7 +207,7 @@ def test_a_counter_comes_through_a_pipe_and_an_endless_file_ends(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with concurrent.futures.ThreadPoolExecutor() as pool:
         pool.submit((tmp_path / "pipe").write_text, saved)
-        assert counting.load(tmp_path / "pipe").moves.ravel().tolist() == json.loads(saved)["moves"]
+        assert counting.load(tmp_path / "pipe").rooms[0].first.tolist() == json.loads(saved)["rooms"][0]["first"]
     with pytest.raises(pirsim.InputError, match="larger than 200 MB"):
         counting.load("/dev/zero")
 
@@ -231,8 +250,8 @@ def test_masked_bits_are_unknown_live_and_masked_people_in_training(load):
     hidden = people == 1
     hidden[:4] = False
     days = [counting.Day(1, bits, np.ma.masked_array(people, hidden)), counting.Day(1, bits, np.where(hidden, -1, people))]
-    moves = [counting.train([day]).moves for day in days]
-    assert np.array_equal(*moves) and not np.array_equal(moves[0], counting.train([days[0]._replace(people=people)]).moves)
+    moves = [counting.train([day]).rooms[0].moves for day in days]
+    assert np.array_equal(*moves) and not np.array_equal(moves[0], counting.train([days[0]._replace(people=people)]).rooms[0].moves)
 
 
 def test_nobody_is_counted_where_nothing_has_been_known_for_five_minutes(load, tmp_path):

@@ -17,15 +17,19 @@ from ._readings import Day, Estimates, LogLike, MapLike, as_day, as_reading, cou
 
 
 class Room(NamedTuple):
-    """The model of one simulated room. A state is a number of people in one mode, count * modes + mode; a symbol is how
+    """The model of one simulated room, at one liveliness. A state is a number of people in one mode, count * modes + mode; a symbol is how
     many sensors report motion."""
 
     number: int
     """In its dataset."""
     weight: float
-    """How much it has to say; all rooms' add up to 1."""
+    """How much it has to say; all add up to 1."""
+    liveliness: float
+    """Odds of a sensor's motion while somebody is there, times those in the room."""
     first: npt.NDArray[np.float64]
     """[state] probability at the first reading."""
+    moves: npt.NDArray[np.float64]
+    """[state, state] probability from one reading to the next, from row to column."""
     emissions: npt.NDArray[np.float64]
     """[state, symbol] probability of each symbol."""
 
@@ -104,21 +108,17 @@ class HiddenMarkovCounter:
         return self._handle.expected_error
 
     @property
-    def moves(self) -> npt.NDArray[np.float64]:
-        """[state, state] probability from one reading to the next, from row to column."""
-        return self._handle.moves
-
-    @property
     def weights(self) -> npt.NDArray[np.float64]:
-        """[room]"""
+        """[model] of each room at each liveliness."""
         return self._handle.weights
 
     @property
     def rooms(self) -> list[Room]:
-        """The model of each room."""
+        """The model of each room at each liveliness, room by room."""
         core = self._handle
-        return [Room(int(number), float(weight), first, emissions) for number, weight, first, emissions in
-                zip(core.rooms, core.weights, core.first, core.emissions)]
+        return [Room(int(number), float(weight), float(liveliness), first, moves, emissions)
+                for number, weight, liveliness, first, moves, emissions in
+                zip(core.rooms, core.weights, core.liveliness, core.first, core.moves, core.emissions)]
 
     def __repr__(self) -> str:
         weights = self.weights

@@ -29,9 +29,8 @@ Counter random_counter(std::mt19937& random, int n_rooms, int n_sensors = 2) {
   counter.settings.modes = 2;
   counter.n_sensors = n_sensors;
   counter.n_counts = 2;
-  counter.moves = random_rows(random, 4, 4);
   for (int r = 0; r < n_rooms; ++r)
-    counter.rooms.push_back({r + 1, 1.0 / n_rooms, random_rows(random, 1, 4),
+    counter.rooms.push_back({r + 1, 1.0 / n_rooms, random_rows(random, 1, 4), random_rows(random, 4, 4),
                              random_rows(random, 4, static_cast<std::size_t>(n_sensors) + 1)});
   return counter;
 }
@@ -87,7 +86,7 @@ AllPaths over_all_paths(const Counter& counter, const RoomModel& room, const Str
   while (true) {
     double p = room.first[path[0]];
     for (std::size_t i = 0; i < n; ++i) {
-      if (i > 0) p *= counter.moves[path[i - 1] * states + path[i]];
+      if (i > 0) p *= room.moves[path[i - 1] * states + path[i]];
       p *= seen(counter, room, stretch, i, path[i]);
     }
     sums.likelihood += p;
@@ -177,6 +176,81 @@ TEST_CASE("Counting live gives what counting forward gives, and rooms mix by wei
   CHECK_THROWS_AS(live.next(std::vector<std::uint8_t>{1}), Error);
 }
 
+TEST_CASE("A room's numbers are the same bits whatever rooms stand beside it") {
+  std::mt19937 random(12);
+  const Counter counter = random_counter(random, 7);  // more than go side by side, and not a multiple of them
+  const Stretch stretch = random_stretch(random, 50, 2, 2);
+  const std::vector<double> all = log_likelihoods(counter, std::vector{stretch});
+  for (std::size_t r = 0; r < counter.rooms.size(); ++r) {
+    Counter alone = counter;
+    alone.rooms = {counter.rooms[r]};
+    CHECK(log_likelihoods(alone, std::vector{stretch})[0] == all[r]);
+  }
+}
+
+TEST_CASE("At a liveliness the odds of another sensor's motion are so many times the room's, while somebody is there") {
+  std::mt19937 random(13);
+  const Counter counter = random_counter(random, 2), all = at_livelinesses(counter);
+  const std::vector<double>& odds = counter.settings.livelinesses;
+  REQUIRE(all.rooms.size() == 2 * odds.size());
+  double weights = 0.0;
+  for (std::size_t i = 0; i < all.rooms.size(); ++i) {
+    const RoomModel &version = all.rooms[i], &room = counter.rooms[i / odds.size()];
+    weights += version.weight;
+    CHECK(version.number == room.number);
+    CHECK(version.liveliness == odds[i % odds.size()]);
+    CHECK(version.first == room.first);
+    for (std::size_t state = 0; state < 4; ++state) {
+      const std::size_t at = 3 * state;
+      CHECK(version.emissions[at] + version.emissions[at + 1] + version.emissions[at + 2] == Approx(1.0));
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double times = state < 2 ? 1.0 : version.liveliness;  // of the two modes of nobody: as they are
+        CHECK(version.emissions[at + k + 1] / version.emissions[at + k] ==
+              Approx(times * room.emissions[at + k + 1] / room.emissions[at + k]));
+      }
+    }
+  }
+  CHECK(weights == Approx(1.0));
+}
+
+TEST_CASE("A log of livelier people than in any room is told by the weights, and is counted better") {
+  std::mt19937 random(14);
+  const std::vector<double> motion{0.01, 0.2, 0.4}, livelier{0.01, 0.5, 0.73};  // at four times the odds
+  std::vector<LabelledRoom> rooms;
+  for (int r = 0; r < 6; ++r) rooms.push_back(known_room(random, r + 1, motion, 2, 1000));
+  Settings settings;
+  settings.modes = 1;  // as these rooms are made
+  const Counter plain = train(rooms, settings);
+  const auto weighed = [](Counter counter, const LabelledRoom& real) {
+    std::vector<Stretch> log = real.days;
+    for (Stretch& day : log) day.people.clear();
+    weigh(counter, log_likelihoods(counter, log));
+    return counter;
+  };
+  const auto mean_liveliness = [](const Counter& counter) {
+    double mean = 0.0;
+    for (const RoomModel& room : counter.rooms) mean += room.weight * std::log2(room.liveliness);
+    return mean;
+  };
+  const LabelledRoom real = known_room(random, 99, livelier, 2, 1000), twin = known_room(random, 98, motion, 2, 1000);
+  const Counter of_real = weighed(at_livelinesses(plain), real), of_twin = weighed(at_livelinesses(plain), twin);
+  CHECK(mean_liveliness(of_real) > 1.5);
+  CHECK(std::abs(mean_liveliness(of_twin)) < 0.5);
+  CHECK(error_of(of_real, real, Pass::smoothed) < error_of(weighed(plain, real), real, Pass::smoothed) - 0.05);
+  CHECK(error_of(of_twin, twin, Pass::smoothed) < error_of(weighed(plain, twin), twin, Pass::smoothed) + 0.02);
+}
+
+TEST_CASE("The band of nine in ten is the shortest run of counts that has so much, the likeliest of several") {
+  const Estimates estimates{4, {0.03, 0.45, 0.45, 0.07, 0.92, 0.0, 0.05, 0.03, 0.3, 0.25, 0.25, 0.2}};
+  const auto is = [&](std::size_t reading, int least, int most) {
+    const auto band = estimates.band(reading, 0.9);
+    return band.least == least && band.most == most;
+  };
+  CHECK(is(0, 1, 2));
+  CHECK(is(1, 0, 0));
+  CHECK(is(2, 0, 3));
+}
+
 TEST_CASE("Nobody is counted where nothing has been known for five minutes, nor live") {
   std::mt19937 random(10);
   const Counter counter = random_counter(random, 2);
@@ -211,8 +285,7 @@ TEST_CASE("A reading that is as good as impossible, again and again, leaves numb
   Counter counter;
   counter.settings.modes = 1;
   counter.n_counts = 2;
-  counter.moves = {1, 0, 0, 1};  // whoever is there stays
-  counter.rooms = {{1, 1.0, {0.5, 0.5}, {1.0 - 1e-100, 1e-100, 0.1, 0.9}}};
+  counter.rooms = {{1, 1.0, {0.5, 0.5}, {1, 0, 0, 1}, {1.0 - 1e-100, 1e-100, 0.1, 0.9}}};
   const Stretch busy{1, std::vector<std::uint8_t>(50, 1)};
   const auto believed = [&](std::vector<double> first, std::size_t reading) {
     counter.rooms[0].first = std::move(first);
@@ -222,7 +295,7 @@ TEST_CASE("A reading that is as good as impossible, again and again, leaves numb
   CHECK(believed({1.0, 0.0}, 0) == 0.0);  // nobody else was ever possible
   CHECK(believed({1.0, 0.0}, 49) == 0.0);
   // Moves that hardly ever happen, to what the motion then proves.
-  counter.moves = {1.0, 0.0, 1e-12, 1.0 - 1e-12};
+  counter.rooms[0].moves = {1.0, 0.0, 1e-12, 1.0 - 1e-12};
   CHECK(believed({1.0, 1e-300}, 0) == Approx(1.0));
 }
 
@@ -263,7 +336,7 @@ TEST_CASE("Training finds the motion of rooms that are made of a known model, on
     }
   }
   const Counter threads = train(rooms, settings, 3);
-  CHECK(threads.moves == counter.moves);
+  for (std::size_t r = 0; r < 4; ++r) CHECK(threads.rooms[r].moves == counter.rooms[r].moves);
   for (std::size_t r = 0; r < 4; ++r) CHECK(threads.rooms[r].emissions == counter.rooms[r].emissions);
 }
 
@@ -362,14 +435,30 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   counter.expected_error = Interval{0.25, 0.75};
   write_counter(folder.path() / "counter.json", counter);
   const Counter read = read_counter(folder.path() / "counter.json");
-  CHECK(read.moves == counter.moves);
+  CHECK(read.rooms[1].moves == counter.rooms[1].moves);
   CHECK(read.n_sensors == counter.n_sensors);
   CHECK(read.n_counts == counter.n_counts);
   CHECK(read.settings.modes == counter.settings.modes);
   CHECK(read.rooms[1].emissions == counter.rooms[1].emissions);
   CHECK(read.rooms[1].first == counter.rooms[1].first);
   CHECK(read.expected_error == counter.expected_error);
-  CHECK(read.sensors.empty());  // as of older files
+  CHECK(read.sensors.empty());                // as of older files
+  counter.rooms.push_back(counter.rooms[1]);  // at another liveliness
+  counter.rooms[2].liveliness = 2.0;
+  counter.rooms[1].weight = counter.rooms[2].weight = 0.25;
+  write_counter(folder.path() / "versions.json", counter);
+  const Counter versions = read_counter(folder.path() / "versions.json");
+  REQUIRE(versions.rooms.size() == 3);
+  CHECK(versions.rooms[2].liveliness == 2.0);
+  CHECK(versions.rooms[2].weight == 0.25);
+  CHECK(versions.rooms[2].moves == counter.rooms[1].moves);
+  // A file of version 1 has its moves in common.
+  const Counter old = parse_counter(
+      R"({"pirsim_counter": 1, "step_s": 30, "modes": 1, "sensors": 1, "counts": 2, "moves": [0.9, 0.1, 0.2, 0.8],
+          "rooms": [{"room": 1, "weight": 1, "first": [0.5, 0.5], "emissions": [0.9, 0.1, 0.4, 0.6]}]})",
+      "old.json");
+  CHECK(old.rooms[0].moves == std::vector{0.9, 0.1, 0.2, 0.8});
+  CHECK(old.rooms[0].liveliness == 1.0);
   counter.sensors = {"hall", "desk"};
   counter.holds_s = {12.5, std::nullopt};
   write_counter(folder.path() / "named.json", counter);
@@ -384,7 +473,7 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   spoilt.settings.step_s = 1e300;
   refused(spoilt);
   spoilt = counter;
-  spoilt.moves[0] += 0.1;
+  spoilt.rooms[1].moves[0] += 0.1;
   refused(spoilt);
   spoilt = counter;
   spoilt.rooms[0].emissions.pop_back();
