@@ -495,7 +495,9 @@ void expect_error(const RoomErrors& errors, std::span<const double> weights, dou
   }
   if (weighed.empty()) return;
   const double times = statement.value() && stated > *statement.value() ? stated / *statement.value() : 1.0;
-  for (double& error : weighed) error *= times;
+  for (std::vector<double>* errors_of : {&weighed, &alike}) {
+    for (double& error : *errors_of) error *= times;
+  }
   made.mean_error = weighted_mean(weighed, own_weights);
   made.error_alike = weighted_mean(alike, own_weights);
   made.counter.expected_error = weighted_interval(weighed, std::vector(weighed.size(), 1.0));
