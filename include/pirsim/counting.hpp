@@ -76,7 +76,8 @@ struct Counter {
 /// Error(input) for no room, rooms without people, and rooms that don't have as many sensors.
 [[nodiscard]] Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads = 0);
 
-/// Each room's model at every liveliness of the settings, room by room, which share its weight.
+/// Each room's model at every liveliness of the settings, room by room, which share its weight. Throws Error(usage) if
+/// 1 isn't among these, or twice.
 [[nodiscard]] Counter at_livelinesses(const Counter& counter);
 
 /// (rooms) of the stretches, each begun anew. Readings that are unknown count nothing; counts that are known are held

@@ -181,7 +181,7 @@ std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> room
 }
 
 /// Only when all else is learned: rooms that learn with moves of their own are surer of their modes than they are right
-/// (of 112 h that were told as 80 % sure .75 were right, instead of .81 of 61).
+/// (docs/counting.md).
 void give_own_moves(Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
   std::vector<Expected> each = expected_of_all(counter, rooms, threads);
   for (std::size_t r = 0; r < each.size(); ++r) {
@@ -535,6 +535,8 @@ std::vector<std::size_t> weighty(const Counter& counter) {
 }  // namespace
 
 Counter at_livelinesses(const Counter& counter) {
+  if (std::ranges::count(counter.settings.livelinesses, 1.0) != 1)
+    throw Error(ErrorCode::usage, "livelinesses: 1 must be among them, once: the rooms as they are");
   const std::size_t modes = size(counter.settings.modes), n_symbols = size(counter.n_symbols());
   Counter all = counter;
   all.rooms.clear();

@@ -190,6 +190,55 @@ TEST_CASE("The error to expect of a room is that of smoothed counts by the other
   }
 }
 
+TEST_CASE(
+    "The error to expect holds nine tenths of all rooms, and grows with what the counter itself expects of the log") {
+  RoomErrors errors;
+  std::vector<double> weights;
+  for (int r = 1; r <= 20; ++r) {
+    errors.weighed.emplace_back(0.05 * r);
+    errors.alike.emplace_back(0.1 * r);
+    errors.stated.emplace_back(r % 2 == 0 ? 0.3 : 0.5);
+    weights.push_back(r == 4 ? 1.0 : 0.0);  // whatever they weigh
+  }
+  const auto expected = [&](double stated) {
+    Calibration made;
+    expect_error(errors, weights, stated, made);
+    return made;
+  };
+  for (const double stated : {0.1, 0.4}) {  // no more than on average
+    const Calibration made = expected(stated);
+    CHECK(made.counter.expected_error->low == Approx(0.05));
+    CHECK(made.counter.expected_error->high == Approx(0.95));
+    CHECK(made.mean_error == Approx(0.2));
+    CHECK(made.error_alike == Approx(0.4));
+  }
+  const Calibration twice = expected(0.8);
+  CHECK(twice.counter.expected_error->high == Approx(1.9));
+  CHECK(twice.mean_error == Approx(0.4));
+  CHECK(twice.error_alike == Approx(0.8));
+  errors.weighed[3].reset();  // nobody was in the one room that has any weight
+  CHECK_FALSE(expected(0.4).counter.expected_error);
+}
+
+TEST_CASE("More days than the rooms have weigh the rooms no further, and other settings than the rooms' are refused") {
+  std::mt19937 random(8);
+  const std::vector<PoolRoom> rooms = pool_of(random, 12);  // of two days
+  const Pool pool(rooms);
+  const std::vector<Stretch> two = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  std::vector<Stretch> six;
+  for (int i = 0; i < 3; ++i) six.insert(six.end(), two.begin(), two.end());
+  const Calibration of_two = pool.calibrate(two, two), of_six = pool.calibrate(six, two);
+  const Calibration of_one = pool.calibrate(std::span(two).first(1), two);
+  CHECK(of_one.effective_rooms > of_two.effective_rooms);  // two days do say more than one
+  for (std::size_t r = 0; r < rooms.size(); ++r)
+    CHECK(of_six.rooms[r].weight == Approx(of_two.rooms[r].weight).epsilon(1e-9));
+  for (const std::vector<double>& odds : {std::vector<double>{}, {0.5, 2.0}, {1.0, 1.0}}) {
+    counting::Settings settings;
+    settings.livelinesses = odds;
+    CHECK_THROWS_AS(Pool(rooms, settings), Error);
+  }
+}
+
 TEST_CASE("A log of one day is compared with one day of each room, not with the mean of more") {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(0.1, 0.5);
@@ -254,6 +303,7 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
     rows.motion.push_back(static_cast<std::uint8_t>(hour % 24 >= 7 && hour % 24 < 9 ? 1 : 0));
   }
   const LogDays days = days_of(rows, {7.0, 10.0});
+  CHECK(days.each.size() == 2);  // which weigh the rooms, and nothing else does
   const std::vector<Stretch>& parts = days.whole;
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].motion == std::vector<std::uint8_t>{1, 1, 0});
@@ -262,6 +312,7 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   // Of a day that has only some of the hours nothing is compared.
   const LogDays nights = days_of(rows, {-4.0, 10.0});
   CHECK(nights.whole.empty());
+  CHECK(nights.each.size() == 2);  // but they weigh
   CHECK(nights.partial == std::vector<std::string>{"1970-01-02", "1970-01-03"});
   CHECK(days.partial.empty());
   CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, {"2026-03-02"}}), contains("no verdict"));

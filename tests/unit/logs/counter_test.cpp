@@ -240,6 +240,31 @@ TEST_CASE("A log of livelier people than in any room is told by the weights, and
   CHECK(error_of(of_twin, twin, Pass::smoothed) < error_of(weighed(plain, twin), twin, Pass::smoothed) + 0.02);
 }
 
+TEST_CASE("Each room learns how fast people come and go there, drawn to all rooms by the settings") {
+  std::mt19937 random(15);
+  const auto room_with = [&](int number, int stays) {  // so many readings, empty and then with somebody, and so on
+    LabelledRoom room{number, {{1, {}}}};
+    for (int i = 0; i < 2000; ++i) {
+      room.days[0].people.push_back(i / stays % 2);
+      room.days[0].motion.push_back(room.days[0].people.back() == 1 && random() % 2 == 0 ? 1 : 0);
+    }
+    return room;
+  };
+  Settings settings;
+  settings.modes = 1;
+  const std::vector<LabelledRoom> rooms{room_with(1, 5), room_with(2, 50)};
+  const auto comes = [&](double shrinkage, std::size_t room) {
+    settings.shrinkage = shrinkage;
+    return train(rooms, settings).rooms[room].moves[1];
+  };
+  CHECK(comes(1e-3, 0) == Approx(0.2).epsilon(0.02));
+  CHECK(comes(1e-3, 1) == Approx(0.02).epsilon(0.05));
+  CHECK(comes(1e9, 0) == Approx(0.11).epsilon(0.02));  // of both together
+  CHECK(comes(1e9, 1) == Approx(comes(1e9, 0)));
+  const double seen = 1000.0, own = (0.2 * seen + 60.0 * comes(1e9, 0)) / (seen + 60.0);
+  CHECK(comes(60.0, 0) == Approx(own).epsilon(0.02));
+}
+
 TEST_CASE("The band of nine in ten is the shortest run of counts that has so much, the likeliest of several") {
   const Estimates estimates{4, {0.03, 0.45, 0.45, 0.07, 0.92, 0.0, 0.05, 0.03, 0.3, 0.25, 0.25, 0.2}};
   const auto is = [&](std::size_t reading, int least, int most) {

@@ -38,6 +38,7 @@ effects:
   - soft_zone_edges: {sigma_deg: [0.5, 1.0]}
   - {missed_triggers: {probability: [0.1, 0.2], sensor: each}, per: day}
 split: {validation_rooms: 0.25, test_rooms: 0.25, test_days: 0.4}
+pictures: 2
 occupants: true
 exports: [uci864, casas, energyplus]
 )";
@@ -110,10 +111,32 @@ std::string faults_of(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("what a recipe's reader adds is no key of it, and a list of one may be its entry alone", "[dataset]") {
+  const std::string start = "pirsim_recipe: 1\n", rooms = "rooms: [{count: 1}]\n";
+  for (const char* key : {"overrides", "data_directories", "originals", "given", "text", "file"})
+    CHECK_THAT(faults_of(start + rooms + key + ": [a]\n"), contains("unknown key '" + std::string(key) + "'"));
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& text) { return read_recipe(folder.write("one.yaml", start + text)); };
+  const RecipeSpec one =
+      read("rooms: [{desks: rows, sensors: [{mount: corner, model: AMN31111}]}]\nexports: casas\npictures: 0\n");
+  CHECK(one.rooms[0].rooms.orders == std::vector{DeskOrder::rows});
+  CHECK(one.rooms[0].rooms.sensors[0].models == std::vector<std::string>{"AMN31111"});
+  CHECK(one.exports == std::vector{Export::casas});
+  CHECK(one.pictures == 0);
+  const RecipeSpec none = read(rooms + "exports: []\n");
+  CHECK(none.exports.empty());
+  CHECK(none.pictures == 6);
+  CHECK_THAT(faults_of(start + "rooms: [{desks: []}]\n"), contains("isn't empty"));
+  CHECK_THAT(faults_of(start + rooms + "exports: [casas, casas]\n"), contains("named twice"));
+  CHECK_THAT(faults_of(start + rooms + "people: [3, 1]\n"), contains("less than the first"));
+  CHECK_THAT(faults_of(start + rooms + "people: [1, 2, 3]\n"), contains("[least, most]"));
+}
+
 TEST_CASE("threads, shards and resuming change no byte of a dataset", "[dataset][seconds]") {
   const Made one, other;
   one.make(one.options());
   one.finish();
+  CHECK(std::distance(fs::directory_iterator(one.out() / "pictures"), {}) == 2);
   auto second = other.options(2), first = other.options(1);
   second.shard = Shard{2, 2};
   first.shard = Shard{1, 2};
