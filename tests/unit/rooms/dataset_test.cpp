@@ -111,7 +111,8 @@ std::string faults_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("what a recipe's reader adds is no key of it, and a list of one may be its entry alone", "[dataset]") {
+TEST_CASE("a recipe's keys: what its reader adds is none, an entry may stand alone, a group takes what all have",
+          "[dataset]") {
   const std::string start = "pirsim_recipe: 1\n", rooms = "rooms: [{count: 1}]\n";
   for (const char* key : {"overrides", "data_directories", "originals", "given", "text", "file"})
     CHECK_THAT(faults_of(start + rooms + key + ": [a]\n"), contains("unknown key '" + std::string(key) + "'"));
@@ -123,7 +124,11 @@ TEST_CASE("what a recipe's reader adds is no key of it, and a list of one may be
   CHECK(one.rooms[0].rooms.sensors[0].models == std::vector<std::string>{"AMN31111"});
   CHECK(one.exports == std::vector{Export::casas});
   CHECK(one.pictures == 0);
+  const RecipeSpec shared = read("people: [1, 3]\nrooms: [{count: 2}, {people: 2}]\n");
+  CHECK(shared.rooms[0].people == CountRange{1, 3});
+  CHECK(shared.rooms[1].people == CountRange{2, 2});
   const RecipeSpec none = read(rooms + "exports: []\n");
+  CHECK_FALSE(none.rooms[0].people);
   CHECK(none.exports.empty());
   CHECK(none.pictures == 6);
   CHECK_THAT(faults_of(start + "rooms: [{desks: []}]\n"), contains("isn't empty"));
