@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/columns.hpp"
 #include "pirsim/counting.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/interval.hpp"
@@ -183,6 +184,7 @@ struct LogCounts {
   LogRows rows;  ///< windows of the counter's step
   counting::Estimates estimates;
   std::optional<Interval> expected_error;
+  std::optional<counting::FiguresOff> figures_off;
   std::string warning{};               ///< the counter's
   std::vector<std::string> remarks{};  ///< what about this log the counter may not be made for
 };
@@ -204,10 +206,53 @@ struct CountError {
 /// two; nothing if nobody is there and all is known.
 [[nodiscard]] std::string how_sure(const LogCounts& counts);
 
-/// CSV: time of a reading's end, people, their mean, and the probability of each count; empty where nobody knows.
+/// CSV: time of a reading's end, people, their mean, the band of nine in ten, and the probability of each count; empty
+/// where nobody knows.
 void write_counts(std::ostream& out, const LogCounts& counts);
+
+// What people ask of it.
+
+/// Of some readings, those that are told.
+struct Figures {
+  double told_h = 0.0;
+  double occupied_h = 0.0;                 ///< with somebody, to be expected
+  double nobody = 0.0, mean = 0.0;         ///< P(nobody), and people, on average; NaN of nothing
+  int most = 0;                            ///< of the counts
+  std::optional<std::size_t> first, last;  ///< readings with somebody, by the counts
+};
+[[nodiscard]] Figures figures_of(const counting::Estimates& estimates, std::size_t begin, std::size_t end,
+                                 double step_s);
+
+/// Readings of one date, or all of a log without dates.
+struct CountedDay {
+  std::string date{};
+  std::size_t begin = 0, end = 0;
+  Figures figures{};
+  std::string arrival{}, departure{};  ///< when the first reading with somebody begins, and the last ends; or no text
+  std::optional<counting::FiguresOff> off{};
+};
+/// An hour of the day, by local time, or of a log without: P(nobody), people, and the most of them, on average over the
+/// days of which it is told.
+struct CountedHour {
+  int hour = 0, days = 0;
+  double nobody = 0.0, mean = 0.0, most = 0.0;
+  std::optional<counting::FiguresOff> off{};  ///< none: unknown, or nobody is there in such an hour
+};
+[[nodiscard]] std::vector<CountedDay> counted_days(const LogCounts& counts);
+[[nodiscard]] std::vector<CountedHour> counted_hours(const LogCounts& counts);
+/// CSV.
+[[nodiscard]] std::string to_csv(std::span<const CountedDay> days);
+[[nodiscard]] std::string to_csv(std::span<const CountedHour> hours);
+
 /// Throws Error(io).
 void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
                        const std::string& made_by);
 
 }  // namespace pirsim::calibrate
+
+namespace pirsim {
+template <>
+[[nodiscard]] std::span<const Column<calibrate::CountedDay>> columns_of();
+template <>
+[[nodiscard]] std::span<const Column<calibrate::CountedHour>> columns_of();
+}  // namespace pirsim

@@ -105,14 +105,17 @@ struct Figure {
 /// don't tell.
 struct DelayCosts {
   double delay_min = 0.0;
+  std::optional<double>
+      nobody{};        ///< instead of a delay: it goes off once a counter gives so much to nobody being there
   double lit_h = 0.0;  ///< in all
   double switched_on_a_day = 0.0;
-  Figure lit_share;             ///< of all hours
-  double lit_empty_h = 0.0;     ///< while nobody was there
-  double dark_h = 0.0;          ///< while somebody was there
-  std::int64_t false_offs = 0;  ///< it went off while somebody was there
-  Figure false_offs_an_hour;    ///< of occupied time
-  Figure dark_share;            ///< of occupied time
+  Figure lit_share;           ///< of all hours
+  double lit_empty_h = 0.0;   ///< while nobody was there
+  double dark_h = 0.0;        ///< while somebody was there
+  double false_offs = 0.0;    ///< how often it went off while somebody was there; of a counter's rows to be expected
+  Figure false_offs_an_hour;  ///< of occupied time
+  Figure dark_share;          ///< of occupied time
+  Figure empty_share;         ///< lit while nobody was there, of all hours
   double longest_dark_s = 0.0;
   double mean_wait_s = 0.0, longest_wait_s = 0.0;  ///< from coming into an empty area to light; NaN: nobody came
 };
@@ -127,7 +130,11 @@ struct DarkSpell {
   enum class Cause { went_off, stayed_off } cause = Cause::went_off;
 };
 
-enum class People { known, unknown };
+enum class People {
+  known,
+  unknown,
+  expected  ///< as a counter estimates them: intervals are over who may have been there
+};
 
 struct LightCosts {
   std::string id;
@@ -143,9 +150,10 @@ struct LightCosts {
   double occupied_h = 0.0;  ///< NaN, as the next one, if the rows have no people
   double span_h = 0.0;      ///< from a day's first person to its last: who switches by hand, and not between
   double power_w = 0.0;
-  double at_most_a_week = 1.0;       ///< as the rule has it
-  std::vector<DelayCosts> by_delay;  ///< in order: every minute up to an hour, and the rule's
-  std::vector<DarkSpell> worst;      ///< of the first delay, the longest first; ten at most
+  double at_most_a_week = 1.0;          ///< as the rule has it
+  std::vector<DelayCosts> by_delay;     ///< in order: every minute up to an hour, and the rule's
+  std::vector<DelayCosts> by_nobody{};  ///< of expected people, in order of `nobody`
+  std::vector<DarkSpell> worst;         ///< of the first delay, the longest first; ten at most
 
   [[nodiscard]] const DelayCosts& at(double delay_min) const;  ///< of one that is there
   [[nodiscard]] double a_day(double sum) const;                ///< 0 where nothing is known
@@ -193,8 +201,9 @@ class Control {
   void begin_run() noexcept;
   /// In order of time. A bit of 2 isn't known, people of -1 neither. A light isn't in rooms that have none of its
   /// sensors, or not its door (bits of 3), or not its area (people of -2). A new replicate or trial begins in the dark.
-  /// day: what intervals are over; a run if it is empty. Throws Error(input) for a clock that tells no time.
-  LitRow add(const Sample& row, std::string_view day = {});
+  /// day: what intervals are over; a run if it is empty. nobody: of expected people, the probability that nobody is
+  /// there, by this row and those before it. Throws Error(input) for a clock that tells no time.
+  LitRow add(const Sample& row, std::string_view day = {}, double nobody = 0.0);
   /// So many of the rows that were added stand for ones that are missing.
   void note_missing(std::int64_t n_rows) noexcept;
   [[nodiscard]] Costs finish() const;
@@ -203,6 +212,10 @@ class Control {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Costs in (draws) of who may have been there, all as likely: their means, each with the middle 90 % of the draws. No
+/// moments in the dark are told.
+[[nodiscard]] Costs expected_of(std::span<const Costs> draws);
 
 /// A row of the table of costs; docs/formats/control.md.
 struct CostLine {

@@ -57,14 +57,34 @@ struct RoomModel {
   double liveliness = 1.0;        ///< odds of a sensor's motion while somebody is there, times those in the room
 };
 
+/// How far off a figure is in rooms that are left out: on average, and in nine of ten cases at most.
+struct Off {
+  double mean = 0.0, most = 0.0;
+};
+/// Of what people ask of a log counted: of a day, and, over as many days as the rooms have, of an hour of the day.
+struct FiguresOff {
+  Off occupied_h, arrival_min, departure_min, most;
+  Off hour_nobody, hour_mean, hour_most;
+};
+struct FigureName {
+  const char* name;
+  Off FiguresOff::*off;
+};
+inline constexpr FigureName figure_names[]{
+    {"occupied_h", &FiguresOff::occupied_h},       {"arrival_min", &FiguresOff::arrival_min},
+    {"departure_min", &FiguresOff::departure_min}, {"most", &FiguresOff::most},
+    {"hour_nobody", &FiguresOff::hour_nobody},     {"hour_mean", &FiguresOff::hour_mean},
+    {"hour_most", &FiguresOff::hour_most}};
+
 /// Plain and immutable once made.
 struct Counter {
   Settings settings;
   int n_sensors = 1;
-  int n_counts = 1;                        ///< 0, 1, ..., n_counts - 1 people
-  std::vector<RoomModel> rooms;            ///< perhaps at several livelinesses each
-  std::optional<Interval> expected_error;  ///< 90 %, mean absolute error in people; docs/howto/own_room.md
-  std::string warning{};                   ///< why its counts can't be relied on; empty: nothing is known against them
+  int n_counts = 1;                         ///< 0, 1, ..., n_counts - 1 people
+  std::vector<RoomModel> rooms;             ///< perhaps at several livelinesses each
+  std::optional<Interval> expected_error;   ///< 90 %, mean absolute error in people; docs/howto/own_room.md
+  std::optional<FiguresOff> figures_off{};  ///< of days like the rooms', smoothed
+  std::string warning{};                    ///< why its counts can't be relied on; empty: nothing is known against them
   // Of the log that it was calibrated by; empty: it wasn't, or its file doesn't tell.
   std::vector<std::string> sensors{};
   std::vector<std::optional<double>> holds_s{};  ///< (sensors) for which they hold motion; none: the log didn't tell
@@ -120,6 +140,11 @@ struct Estimates {
 };
 
 [[nodiscard]] Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass);
+
+/// (draws)(readings) how many people there may have been, each course as likely as the counter holds it to be: a room
+/// by weight, its states from the last reading back to the first [Scott2002]. Counts that are known are held to;
+/// unknown_count where a smoothed reading isn't told.
+[[nodiscard]] std::vector<std::vector<int>> draw_people(const Counter& counter, const Stretch& stretch, int n_draws);
 
 /// Counts reading by reading, as they come; the same as Pass::forward. The counter outlives it.
 class LiveCount {

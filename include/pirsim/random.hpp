@@ -67,8 +67,9 @@ enum class Purpose : std::uint32_t {
   room_ambient = 409,    ///< how warm a room is
   day_ambient = 410,     ///< how much warmer one of its days
   // Of light, from 500 on.
-  drawn_days = 500,   ///< days drawn with replacement, for intervals over days
-  test = 0xFFFF0000,  ///< reserved for tests
+  drawn_days = 500,    ///< days drawn with replacement, for intervals over days
+  drawn_people = 501,  ///< who may have been there, by a counter; run: which draw
+  test = 0xFFFF0000,   ///< reserved for tests
 };
 
 struct StreamKey {

@@ -96,6 +96,26 @@ nb::object pair_of(const std::optional<Interval>& interval) {
   return interval ? nb::object(nb::make_tuple(interval->low, interval->high)) : nb::none();
 }
 
+/// Each column of a table, by name: texts or numbers, NaN where nothing is known.
+template <typename Row>
+nb::dict columns_of_rows(const std::vector<Row>& rows) {
+  nb::dict columns;
+  for (const Column<Row>& column : columns_of<Row>()) {
+    nb::list cells;
+    for (const Row& row : rows) {
+      const Cell cell = column.value(row);
+      if (const auto* text = std::get_if<std::string_view>(&cell))
+        cells.append(nb::str(text->data(), text->size()));
+      else if (const auto* count = std::get_if<std::int64_t>(&cell))
+        cells.append(static_cast<double>(*count));
+      else
+        cells.append(std::holds_alternative<double>(cell) ? std::get<double>(cell) : std::nan(""));
+    }
+    columns[nb::str(column.name.data(), column.name.size())] = cells;
+  }
+  return columns;
+}
+
 // -- counters --------------------------------------------------------------------------------------------------------
 
 /// (rooms)
@@ -168,13 +188,49 @@ nb::object told_readings(const Bits& motion, double step_s) {
   return to_numpy(std::vector<std::uint8_t>(told.begin(), told.end()), {told.size()});
 }
 
+counting::Estimates estimates_of(const Array<double, 2>& probabilities) {
+  return {static_cast<int>(probabilities.shape(1)),
+          {probabilities.data(), probabilities.data() + probabilities.size()}};
+}
+
 std::string counts_csv(const LogRows& readings, const Array<double, 2>& probabilities) {
   std::ostringstream text;
-  calibrate::write_counts(text, {readings,
-                                 {static_cast<int>(probabilities.shape(1)),
-                                  {probabilities.data(), probabilities.data() + probabilities.size()}},
-                                 std::nullopt});
+  calibrate::write_counts(text, {readings, estimates_of(probabilities), {}, {}});
   return text.str();
+}
+
+/// (readings) the least and the most of nine in ten; -1 where none is told.
+nb::tuple bands(const Array<double, 2>& probabilities) {
+  const counting::Estimates estimates = estimates_of(probabilities);
+  const std::size_t n = probabilities.shape(0);
+  std::vector<std::int64_t> least(n, -1), most(n, -1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!estimates.is_told(i)) continue;
+    const auto band = estimates.band(i, calibrate::band_share);
+    least[i] = band.least, most[i] = band.most;
+  }
+  return nb::make_tuple(to_numpy(std::move(least), {n}), to_numpy(std::move(most), {n}));
+}
+
+/// By name, (on average, in nine of ten cases at most); or None.
+nb::object told_off(const std::optional<counting::FiguresOff>& off) {
+  if (!off) return nb::none();
+  nb::dict told;
+  for (const auto& [name, member] : counting::figure_names)
+    told[name] = nb::make_tuple(((*off).*member).mean, ((*off).*member).most);
+  return told;
+}
+
+/// Columns of `pirsim count --days` and `--hours`. off: as told_off() gives it.
+nb::tuple figures(const LogRows& readings, const Array<double, 2>& probabilities, const nb::object& off) {
+  calibrate::LogCounts counts{readings, estimates_of(probabilities), {}, {}};
+  if (!off.is_none()) {
+    counts.figures_off.emplace();
+    for (const auto& [name, member] : counting::figure_names)
+      (*counts.figures_off).*member = {nb::cast<double>(off[name][0]), nb::cast<double>(off[name][1])};
+  }
+  return nb::make_tuple(columns_of_rows(calibrate::counted_days(counts)),
+                        columns_of_rows(calibrate::counted_hours(counts)));
 }
 
 /// A dataset's days of one part as readings, (room, seconds of a row, motion, people) of each.
@@ -254,6 +310,7 @@ void add_counters(nb::module_& module) {
       .def_ro("sensors", &Counter::sensors)
       .def_ro("holds_s", &Counter::holds_s)
       .def_prop_ro("expected_error", [](const Counter& counter) { return pair_of(counter.expected_error); })
+      .def_prop_ro("figures_off", [](const Counter& counter) { return told_off(counter.figures_off); })
       .def_prop_ro("rooms", [](const Counter& counter) { return of_rooms(counter, &RoomModel::number); })
       .def_prop_ro("weights", [](const Counter& counter) { return of_rooms(counter, &RoomModel::weight); })
       .def_prop_ro("first", [](const Counter& counter) { return tables_of_rooms(counter, &RoomModel::first); })
@@ -301,25 +358,13 @@ void copy_row(const Array<From, 2>& from, std::size_t row, std::vector<To>& to) 
   to.assign(begin, begin + from.shape(1));
 }
 
-/// (lights x delays) of each column of `pirsim control -o`: texts or numbers, NaN where nothing is known.
+/// (lights x delays) of each column of `pirsim control -o`.
 nb::dict columns_of_costs(const control::Costs& costs) {
-  nb::dict columns;
-  for (const Column<control::CostLine>& column : columns_of<control::CostLine>()) {
-    nb::list cells;
-    for (const control::LightCosts& light : costs.lights) {
-      for (const control::DelayCosts& at : light.by_delay) {
-        const Cell cell = column.value({light, at});
-        if (const auto* text = std::get_if<std::string_view>(&cell))
-          cells.append(nb::str(text->data(), text->size()));
-        else if (const auto* count = std::get_if<std::int64_t>(&cell))
-          cells.append(static_cast<double>(*count));
-        else
-          cells.append(std::holds_alternative<double>(cell) ? std::get<double>(cell) : std::nan(""));
-      }
-    }
-    columns[nb::str(column.name.data(), column.name.size())] = cells;
+  std::vector<control::CostLine> lines;
+  for (const control::LightCosts& light : costs.lights) {
+    for (const control::DelayCosts& at : light.by_delay) lines.push_back({light, at});
   }
-  return columns;
+  return columns_of_rows(lines);
 }
 
 /// Columns of rows, one after the other, by their names in pirsim.Result.
@@ -408,6 +453,8 @@ void add_logs(nb::module_& module) {
              "Probabilities of counts, an array, and remarks.");
   module.def("told_readings", &told_readings, "motion"_a, "step_s"_a, "0 or 1, an array.");
   module.def("counts_csv", &counts_csv, "readings"_a, "probabilities"_a, "As pirsim count writes them.");
+  module.def("bands", &bands, "probabilities"_a, "The least and the most of nine in ten, arrays.");
+  module.def("figures", &figures, "readings"_a, "probabilities"_a, "off"_a.none(), "Columns of days, and of hours.");
   module.def("read_room_days", &read_room_days, "folder"_a, "part"_a, "step_s"_a, "threads"_a,
              "Days of a dataset, as tuples.");
   module.def("calibrate", &calibrated, "pool"_a, "log"_a, "traits"_a, "settings"_a, "threads"_a,

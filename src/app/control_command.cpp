@@ -11,6 +11,7 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "files/disk/file.hpp"
+#include "logs/calibrate_light.hpp"
 #include "logs/log_rows.hpp"
 #include "model/core/text.hpp"
 #include "pirsim/control.hpp"
@@ -24,7 +25,7 @@ struct ControlOptions {
   std::vector<std::filesystem::path> rows;
   LogInputs log;
   Inputs inputs;  ///< of the scene
-  std::filesystem::path rule, output, report, light;
+  std::filesystem::path rule, counter, output, report, light;
   std::vector<double> delays_min;
   std::optional<double> window_s, at_most_a_week;
 };
@@ -55,6 +56,17 @@ std::string view_command(const ControlOptions& options) {
 }
 
 template <typename Source>
+control::Costs costs_of(const Source& /*source*/, const control::Control& control, const control::RuleSpec& /*rule*/) {
+  return control.finish();
+}
+control::Costs costs_of(const control::CountedSamples& source, const control::Control& /*control*/,
+                        const control::RuleSpec& rule) {
+  control::Costs costs = source.expected_costs(rule);
+  costs.remarks.insert(costs.remarks.end(), source.remarks().begin(), source.remarks().end());
+  return costs;
+}
+
+template <typename Source>
 void control_rows(const ControlOptions& options, Source&& source) {
   std::vector<Issue> remarks;
   const control::RuleSpec rule = rule_of(options, remarks);
@@ -78,7 +90,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
     };
     control.note_missing(source.each(take, [&] { control.begin_run(); }));
   }
-  control::Costs costs = control.finish();
+  control::Costs costs = costs_of(source, control, rule);
   costs.remarks.insert(costs.remarks.begin(), remarks.begin(), remarks.end());
   if (lit_table) lit_table->finish();
   tell(costs.remarks, options.inputs.verbosity);
@@ -98,6 +110,8 @@ void control_rows(const ControlOptions& options, Source&& source) {
 void check_options(const ControlOptions& options) {
   if (options.rows.empty() == options.log.files.empty())
     throw Error(ErrorCode::usage, "say which rows: files of runs, a dataset's folder, or --log");
+  if (!options.counter.empty() && options.log.files.empty())
+    throw Error(ErrorCode::usage, "--counter: it counts the people of a --log");
   for (auto delay = options.delays_min.begin(); delay != options.delays_min.end(); ++delay) {
     if (std::find(options.delays_min.begin(), delay, *delay) != delay)
       throw Error(ErrorCode::usage, "--delay: " + shortest_number(*delay) + " is given twice");
@@ -112,7 +126,8 @@ void control_light(const ControlOptions& options) {
     return control_rows(options, rows);
   }
   const Log log = read_log(options.log, options.inputs.verbosity);
-  control_rows(options, control::LogSamples(log, options.window_s));
+  if (options.counter.empty()) return control_rows(options, control::LogSamples(log, options.window_s));
+  control_rows(options, control::CountedSamples(log, counting::read_counter(options.counter)));
 }
 
 }  // namespace
@@ -123,6 +138,7 @@ void add_control_command(CLI::App& app) {
   pirsim control week.csv --scene office.gltf --report light.html    a light for each area, by its own sensors
   pirsim control week.csv --rule rule.yaml -o costs.csv --light lit.csv
   pirsim control --log week.csv --delay 5 --report light.html        of a log: when it would have been lit
+  pirsim control --log week.csv --counter DIR/counter.json           and on whom it would have gone off, probably
 )");
   const auto options = std::make_shared<ControlOptions>();
   CLI::Option* rows =
@@ -130,8 +146,11 @@ void add_control_command(CLI::App& app) {
   declare_inputs(command, as_input(rows)->option_text("ROWS..."), options->rows, dataset_contents());
   offer_log(command, options->log);
   command.get_option("--log")->required(false);
-  command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")
-      ->option_text("SECONDS");
+  CLI::Option* step = command.add_option("--step", options->window_s, "of an event log: length of a row (default: 1)")
+                          ->option_text("SECONDS");
+  offer_input_file(command, "--counter", options->counter,
+                   "of pirsim calibrate: what to expect of a log that nobody counted; rows are of its step")
+      ->excludes(step);
   offer_input_file(command, "--rule", options->rule, "lights, their sensors and delays, YAML (default: any sensor)");
   command
       .add_option("--delay", options->delays_min, "instead of the rule's; several: the first is the one that counts")

@@ -160,7 +160,7 @@ void add_log_command(CLI::App& app) {
 namespace {
 
 struct CountOptions {
-  std::filesystem::path counter, output, report;
+  std::filesystem::path counter, output, report, days, hours;
   LogInputs log;
   counting::Pass pass = counting::Pass::smoothed;
   Verbosity verbosity = Verbosity::normal;
@@ -168,7 +168,8 @@ struct CountOptions {
 
 void write(const CountOptions& options, const calibrate::LogCounts& counts) {
   if (options.output.empty()) {
-    if (options.report.empty()) calibrate::write_counts(std::cout, counts);
+    if (options.report.empty() && options.days.empty() && options.hours.empty())
+      calibrate::write_counts(std::cout, counts);
     return require_written();
   }
   io::AtomicFile file(options.output);
@@ -184,7 +185,9 @@ void count(const CountOptions& options) {
   write(options, counts);
   if (!options.report.empty())
     calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), program());
-  tell_written({{options.output}, {options.report}}, options.verbosity);
+  if (!options.days.empty()) io::write_text_file(options.days, calibrate::to_csv(calibrate::counted_days(counts)));
+  if (!options.hours.empty()) io::write_text_file(options.hours, calibrate::to_csv(calibrate::counted_hours(counts)));
+  tell_written({{options.output}, {options.days}, {options.hours}, {options.report}}, options.verbosity);
   std::vector<Issue> warnings;
   if (!counts.warning.empty()) warnings.push_back({Severity::warning, Where{options.counter.string()}, counts.warning});
   for (const std::string& remark : counts.remarks)
@@ -207,7 +210,10 @@ void add_count_command(CLI::App& app) {
   offer_input_file(command, "COUNTER", options->counter, "counter.json of pirsim calibrate")->required();
   offer_log(command, options->log);
   offer_output(command, output_names, options->output, "counts as CSV (default: standard output)");
-  offer_output(command, "--report", options->report, "a page with the log and the counts as time lines");
+  offer_output(command, "--days", options->days, "a row a day: hours with somebody, arrival, departure, .csv",
+               {".csv"});
+  offer_output(command, "--hours", options->hours, "a row an hour of the day: P(nobody), people, .csv", {".csv"});
+  offer_output(command, "--report", options->report, "a page with all of it, and the counts as time lines");
   command.add_flag_callback(
       "--forward", [options] { options->pass = counting::Pass::forward; },
       "each reading by those before it alone (default: by those after it as well)");

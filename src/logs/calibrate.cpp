@@ -87,6 +87,7 @@ struct ErrorOfRoom {
   std::optional<double> weighed;
   std::optional<double> stated;  ///< what the weighed counter itself expects
   std::optional<double> alike;   ///< by all rooms alike, as lively as they are
+  FigureErrors figures{};
 };
 
 /// A room's days, on average.
@@ -147,13 +148,14 @@ ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room) {
   for (counting::RoomModel& model : alike.rooms) model.weight /= n_others;
   Mean weighed_error, statement, alike_error;
   const double step_s = counter.settings.step_s;
+  std::vector<Estimates> told;
   for (std::size_t d = 0; d < log.size(); ++d) {
-    const Estimates told = counting::estimate(weighed, log[d], counting::Pass::smoothed);
-    add_error(told, room.days[d].people, step_s, weighed_error);
-    add_own_statement(told, step_s, statement);
+    told.push_back(counting::estimate(weighed, log[d], counting::Pass::smoothed));
+    add_error(told.back(), room.days[d].people, step_s, weighed_error);
+    add_own_statement(told.back(), step_s, statement);
     add_error(counting::estimate(alike, log[d], counting::Pass::smoothed), room.days[d].people, step_s, alike_error);
   }
-  return {weighed_error.value(), statement.value(), alike_error.value()};
+  return {weighed_error.value(), statement.value(), alike_error.value(), figure_errors(told, room.days, step_s)};
 }
 
 /// Of row i from the mean of the others, by their covariance.
@@ -171,7 +173,6 @@ double distance_from_others(const Eigen::MatrixXd& rows, Eigen::Index i) {
   return away.dot(stats::detail::solve_symmetric(covariance, away));
 }
 
-constexpr double minute_s = 60.0, hour_s = 3600.0;
 constexpr double window_min = 5.0, pause_min = 10.0, busy_share = 0.7;
 constexpr int least_readings_with_motion = 20;
 
@@ -479,6 +480,8 @@ RoomErrors errors_of_rooms(const Counter& counter, std::span<const LabelledRoom>
         errors.weighed.push_back(one.weighed);
         errors.stated.push_back(one.stated);
         errors.alike.push_back(one.alike);
+        for (std::size_t f = 0; f < one.figures.size(); ++f)
+          errors.figures[f].insert(errors.figures[f].end(), one.figures[f].begin(), one.figures[f].end());
       });
   return errors;
 }
@@ -502,6 +505,7 @@ void expect_error(const RoomErrors& errors, std::span<const double> weights, dou
   made.mean_error = weighted_mean(weighed, own_weights);
   made.error_alike = weighted_mean(alike, own_weights);
   made.counter.expected_error = weighted_interval(weighed, std::vector(weighed.size(), 1.0));
+  made.counter.figures_off = figures_off(errors.figures, times, made.counter.settings.step_s);
 }
 
 double unlike_share(const stats::Matrix<double>& rows, std::span<const double> vector) {

@@ -1,6 +1,7 @@
 // Means, quantiles and ranks of weighted values.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,8 @@
 #include "stats/matrix.hpp"
 
 namespace pirsim::calibrate {
+
+inline constexpr double minute_s = 60.0, hour_s = 3600.0;
 
 inline constexpr int fewest_rooms = 10;  ///< that can be weighed
 
@@ -29,10 +32,19 @@ inline constexpr int fewest_rooms = 10;  ///< that can be weighed
 
 // What error to expect: each room is calibrated and counted as if it were the real one.
 
+/// How far off figures are, case by case; as counting::figure_names.
+using FigureErrors = std::array<std::vector<double>, std::size(counting::figure_names)>;
+/// Of a room's days, by smoothed counts of each.
+[[nodiscard]] FigureErrors figure_errors(std::span<const counting::Estimates> told,
+                                         std::span<const counting::Stretch> days, double step_s);
+/// times: by how much they are larger than in the rooms. step_s: of a reading, which arrivals aren't told closer than.
+[[nodiscard]] counting::FiguresOff figures_off(const FigureErrors& errors, double times, double step_s);
+
 /// (rooms) mean absolute errors of smoothed counts by the other rooms' models, weighed by the room's own log, or alike;
 /// and what the weighed counter itself expects, by its probabilities.
 struct RoomErrors {
   std::vector<std::optional<double>> weighed, stated, alike;
+  FigureErrors figures;  ///< of all rooms
 };
 [[nodiscard]] RoomErrors errors_of_rooms(const counting::Counter& counter,
                                          std::span<const counting::LabelledRoom> rooms, unsigned threads);

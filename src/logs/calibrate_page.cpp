@@ -248,22 +248,6 @@ double mean_count(std::span<const double> probabilities) {
   return mean;
 }
 
-/// Readings of one date, or all of a log without dates.
-struct CountedDay {
-  std::string name;
-  std::size_t begin = 0, end = 0;
-};
-
-std::vector<CountedDay> days_of(const LogRows& rows) {
-  std::vector<CountedDay> days;
-  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    const std::string date = rows.clock == LogClock::elapsed ? "" : to_text(rows.begin[i], rows.clock).substr(0, 10);
-    if (days.empty() || days.back().name != date) days.push_back({date, i, i});
-    days.back().end = i + 1;
-  }
-  return days;
-}
-
 /// Stretches in which nobody knows the number.
 std::vector<io::SeriesChart::Phase> unknown_phases(const LogCounts& counts, const CountedDay& day) {
   std::vector<io::SeriesChart::Phase> phases;
@@ -288,7 +272,7 @@ Interval likely(const LogCounts& counts, std::size_t reading) {
 io::SeriesChart chart_of(const LogCounts& counts, const CountedDay& day) {
   const LogRows& rows = counts.rows;
   io::SeriesChart chart;
-  chart.title = day.name.empty() ? "The log" : day.name;
+  chart.title = day.date.empty() ? "The log" : day.date;
   chart.window_s = rows.window_s;
   chart.end_s = static_cast<double>(day.end - day.begin) * rows.window_s;
   for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
@@ -323,10 +307,69 @@ io::Table hours_table(const LogCounts& counts, const std::vector<CountedDay>& da
           counts.estimates.is_told(i) ? static_cast<std::size_t>(counts.estimates.count(i)) : n_counts(counts);
       hours[column] += counts.rows.window_s / 3600.0;
     }
-    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.name});
+    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.date});
     for (const double one : hours) row.push_back(fixed(one, 1));
   }
   return table;
+}
+
+/// A figure, and how far off it may be.
+std::string with_error(const std::string& figure, const std::optional<counting::FiguresOff>& off,
+                       counting::Off counting::FiguresOff::*of, int digits, const std::string& unit = "") {
+  return figure.empty() || !off ? figure : figure + " +- " + fixed(((*off).*of).most, digits) + unit;
+}
+
+constexpr const char* what_errors_are =
+    "After +- stands how far off it is at most in nine of ten cases, in the simulated rooms, each left out and counted "
+    "as if it were yours.";
+
+io::ReportSection days_section(const LogCounts& counts, const std::vector<CountedDay>& days) {
+  using Off = counting::FiguresOff;
+  io::ReportSection section{"Each day", {}, {}, {}};
+  if (counts.figures_off) section.paragraphs.emplace_back(what_errors_are);
+  io::Table table{{"day", "known, h", "with somebody, h", "arrival", "departure", "most people"}, {}};
+  for (const CountedDay& day : days) {
+    const Figures& figures = day.figures;
+    table.rows.push_back({day.date, fixed(figures.told_h, 1),
+                          with_error(fixed(figures.occupied_h, 1), day.off, &Off::occupied_h, 1),
+                          with_error(day.arrival, day.off, &Off::arrival_min, 1, " min"),
+                          with_error(day.departure, day.off, &Off::departure_min, 1, " min"),
+                          with_error(std::to_string(figures.most), day.off, &Off::most, 0)});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+io::ReportSection hours_section(const LogCounts& counts) {
+  using Off = counting::FiguresOff;
+  io::ReportSection section{"Each hour of the day", {}, {}, {}};
+  section.paragraphs = {
+      "On average over the days. The band is as wide as the error that nine of ten hours don't exceed."};
+  io::Table table{{"hour", "days", "nobody there", "people", "most people"}, {}};
+  io::LineChart chart;
+  chart.title = "People by hour";
+  chart.x_label = counts.rows.clock == LogClock::elapsed ? "hour of the log" : "hour of the day";
+  chart.y_label = "people";
+  io::LineChart::Line mean{"on average", {}};
+  const std::vector<CountedHour> hours = counted_hours(counts);
+  for (const CountedHour& hour : hours) {
+    if (hour.days == 0) continue;
+    table.rows.push_back(
+        {std::to_string(hour.hour), std::to_string(hour.days),
+         hour.off ? fixed(100.0 * hour.nobody, 0) + " +- " + percent(hour.off->hour_nobody.most) : percent(hour.nobody),
+         with_error(fixed(hour.mean, 2), hour.off, &Off::hour_mean, 2),
+         with_error(fixed(hour.most, 1), hour.off, &Off::hour_most, 1)});
+    io::LineChart::Point point{hour.hour + 0.5, hour.mean, {}, {}};
+    if (hour.off) point.low = std::max(0.0, hour.mean - hour.off->hour_mean.most);
+    if (hour.off) point.high = hour.mean + hour.off->hour_mean.most;
+    chart.y_high = std::max({chart.y_high, 1.05 * point.y, 1.05 * point.high.value_or(0.0)});
+    mean.points.push_back(std::move(point));
+  }
+  if (!hours.empty()) chart.x_low = hours.front().hour, chart.x_high = hours.back().hour + 1.0;
+  chart.lines.push_back(std::move(mean));
+  section.tables.push_back(std::move(table));
+  section.charts.emplace_back(std::move(chart));
+  return section;
 }
 
 }  // namespace
@@ -457,7 +500,7 @@ std::string how_sure(const LogCounts& counts) {
 void write_counts(std::ostream& out, const LogCounts& counts) {
   const LogRows& rows = counts.rows;
   const bool has_clock = rows.clock != LogClock::elapsed;
-  out << (has_clock ? "time" : "time_s") << ",people,mean";
+  out << (has_clock ? "time" : "time_s") << ",people,mean,least,most";
   for (std::size_t n = 0; n < n_counts(counts); ++n) out << ",p" << n;
   out << '\n';
   for (std::size_t i = 0; i < rows.n_windows(); ++i) {
@@ -467,7 +510,14 @@ void write_counts(std::ostream& out, const LogCounts& counts) {
     std::string line = has_clock ? to_text(end, rows.clock) : io::csv_number(end.seconds());
     const auto of_reading = probabilities(counts, i);
     const bool is_told = counts.estimates.is_told(i);
-    line += ',' + (is_told ? std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2) : ",");
+    line += ',';
+    if (is_told) {
+      const auto [least, most] = counts.estimates.band(i, band_share);
+      line += std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2) + ',' +
+              std::to_string(least) + ',' + std::to_string(most);
+    } else {
+      line += ",,,";
+    }
     for (const double p : of_reading) line += ',' + (is_told ? fixed(p, 3) : "");
     out << line << '\n';
   }
@@ -475,7 +525,7 @@ void write_counts(std::ostream& out, const LogCounts& counts) {
 
 void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
                        const std::string& made_by) {
-  const std::vector<CountedDay> days = days_of(counts.rows);
+  const std::vector<CountedDay> days = counted_days(counts);
   constexpr std::size_t most_days = 31;
   io::Report report;
   report.title = "How many people were there?";
@@ -495,6 +545,8 @@ void write_counts_page(const std::filesystem::path& file, const LogCounts& count
   if (const std::string sure = how_sure(counts); !sure.empty()) report.paragraphs.push_back(sure);
   if (days.size() > most_days)
     report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
+  report.sections.push_back(days_section(counts, days));
+  report.sections.push_back(hours_section(counts));
   report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});
   io::ReportSection lines{"Day by day", {}, {}, {}};
   for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d)

@@ -5,12 +5,14 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 
 #include "files/disk/file.hpp"
 #include "model/core/parallel.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/counting.hpp"
 #include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 
 namespace pirsim::counting {
 namespace {
@@ -343,6 +345,13 @@ Counter counter_from(const Json& json) {
   if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
   if (const auto error = json.find("expected_error"); error != json.end())
     counter.expected_error = Interval{error->at(0).get<double>(), error->at(1).get<double>()};
+  if (const auto told = json.find("figures_off"); told != json.end()) {
+    counter.figures_off.emplace();
+    for (const auto& [name, off] : figure_names) {
+      const Json& one = member(*told, name);
+      (*counter.figures_off).*off = {one.at(0).get<double>(), one.at(1).get<double>()};
+    }
+  }
   if (const auto warning = json.find("warning"); warning != json.end()) counter.warning = warning->get<std::string>();
   if (const auto told = json.find("sensor_names"); told != json.end())
     counter.sensors = names(*told, counter.n_sensors);
@@ -643,6 +652,62 @@ Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass) {
   return mixed;
 }
 
+namespace {
+
+/// One of so many shares, by chance.
+std::size_t pick(std::span<const double> shares, double uniform) {
+  double left = uniform * std::accumulate(shares.begin(), shares.end(), 0.0);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (!(shares[i] > 0.0)) continue;
+    last = i;
+    if ((left -= shares[i]) < 0.0) break;
+  }
+  return last;
+}
+
+/// States from the last reading back to the first, one course; as counts.
+std::vector<int> course_of(const Counter& counter, const RoomModel& room, std::span<const Lanes<1>::Values> beliefs,
+                           Stream stream) {
+  const std::size_t n = size(counter.n_states());
+  std::vector<int> people(beliefs.size() / n);
+  std::vector<double> shares(n);
+  std::size_t next = 0;
+  for (std::size_t i = people.size(); i-- > 0;) {
+    for (std::size_t state = 0; state < n; ++state)
+      shares[state] = beliefs[i * n + state][0] * (i + 1 < people.size() ? room.moves[state * n + next] : 1.0);
+    next = pick(shares, stream.uniform());
+    people[i] = static_cast<int>(next / size(counter.settings.modes));
+  }
+  return people;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> draw_people(const Counter& counter, const Stretch& stretch, int n_draws) {
+  std::vector<double> weights;
+  for (const RoomModel& room : counter.rooms) weights.push_back(room.weight);
+  std::vector<std::vector<int>> draws(size(n_draws));
+  const std::vector<Reading> readings = readings_of(stretch);
+  std::vector<Lanes<1>::Values> beliefs;
+  std::optional<std::size_t> last;
+  for (int draw = 0; draw < n_draws; ++draw) {
+    const std::size_t r = pick(weights, (draw + 0.5) / n_draws);  // rooms in order, each as often as its weight says
+    const RoomModel* room = &counter.rooms[r];
+    if (r != last) beliefs = Lanes<1>(counter, std::span(&room, 1)).forward(readings).beliefs;
+    last = r;
+    draws[size(draw)] =
+        course_of(counter, *room, beliefs, Stream({1, static_cast<std::uint32_t>(draw), 0, Purpose::drawn_people}));
+  }
+  const std::vector<char> told = told_readings(stretch, counter.settings.step_s, Pass::smoothed);
+  for (std::vector<int>& people : draws) {
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      if (told[i] == 0) people[i] = unknown_count;
+    }
+  }
+  return draws;
+}
+
 LiveCount::LiveCount(const Counter& counter) : counter_(&counter), unknown_s_(never_s) {}
 
 std::vector<double> LiveCount::next(std::span<const std::uint8_t> bits) {
@@ -690,6 +755,10 @@ void write_counter(const std::filesystem::path& file, const Counter& counter) {
   for (const std::optional<double>& hold_s : counter.holds_s)
     json["holds_s"].push_back(hold_s ? Json(*hold_s) : Json());
   if (counter.expected_error) json["expected_error"] = {counter.expected_error->low, counter.expected_error->high};
+  if (counter.figures_off) {
+    for (const auto& [name, off] : figure_names)
+      json["figures_off"][name] = {((*counter.figures_off).*off).mean, ((*counter.figures_off).*off).most};
+  }
   io::write_text_file(file, json.dump() + '\n');
 }
 

@@ -333,7 +333,13 @@ LogCounts count_log(const counting::Counter& counter, LogRows rows, const LogTra
   counting::Stretch stretch = whole_log(rows);
   stretch.people.clear();  // a count is made without a look at the answer
   counting::Estimates estimates = counting::estimate(counter, stretch, pass);
-  return {std::move(rows), std::move(estimates), counter.expected_error, counter.warning, remarks_of(counter, log)};
+  const bool has_errors = pass == counting::Pass::smoothed;  // they are of such counts
+  return {std::move(rows),
+          std::move(estimates),
+          has_errors ? counter.expected_error : std::nullopt,
+          has_errors ? counter.figures_off : std::nullopt,
+          counter.warning,
+          remarks_of(counter, log)};
 }
 
 std::optional<CountError> error_of(const LogCounts& counts) {

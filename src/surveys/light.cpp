@@ -30,6 +30,15 @@ namespace {
 constexpr std::size_t n_draws = 400, fewest_days = 3;
 constexpr double middle = 0.9;
 
+/// Of values, at least one.
+Interval middle_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  const auto at = [&](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  };
+  return {at(0.5 - 0.5 * middle), at(0.5 + 0.5 * middle)};
+}
+
 /// Of one day and delay, in rows.
 struct DelaySums {
   std::int32_t lit = 0, lit_empty = 0, dark = 0, false_offs = 0, switched_on = 0;
@@ -86,12 +95,7 @@ Figure DrawnDays::ratio(const std::vector<double>& above, const std::vector<doub
     }
     if (denominator > 0.0) ratios.push_back(numerator / denominator);
   }
-  if (ratios.empty()) return figure;
-  std::ranges::sort(ratios);
-  const auto at = [&](double share) {
-    return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1) + 0.5)];
-  };
-  figure.over_days = Interval{at(0.5 - 0.5 * middle), at(0.5 + 0.5 * middle)};
+  if (!ratios.empty()) figure.over_days = middle_of(std::move(ratios));
   return figure;
 }
 
@@ -115,6 +119,9 @@ std::vector<double> delays_of(const LightSpec& light) {
   delays.erase(std::ranges::unique(delays).begin(), delays.end());
   return delays;
 }
+
+/// A light that goes by a counter goes off at these probabilities that nobody is there.
+constexpr std::array nobody_levels{0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99};
 
 /// Where a light finds what it goes by.
 struct Columns {
@@ -171,7 +178,7 @@ bool is_between(double hour, double from_h, double to_h) {
 /// One light at all delays, from row to row.
 class Light {
  public:
-  Light(const LightSpec& spec, Columns columns, double window_s)
+  Light(const LightSpec& spec, Columns columns, double window_s, People people)
       : spec_(spec),
         columns_(std::move(columns)),
         window_s_(window_s),
@@ -182,14 +189,15 @@ class Light {
     if (spec.together) together_rows_ = rows_of(spec.together->within_s);
     settle_rows_ = 1 + static_cast<std::int64_t>(std::ceil(spec.settle_s / window_s));
     chosen_ = static_cast<std::size_t>(std::ranges::find(delays_min_, spec.delays_min.front()) - delays_min_.begin());
-    waits_.resize(delays_min_.size());
-    longest_dark_.resize(delays_min_.size(), 0);
+    n_switches_ = delays_min_.size() + (people == People::expected ? nobody_levels.size() : 0);
+    waits_.resize(n_switches_);
+    longest_dark_.resize(n_switches_, 0);
     begin();
   }
 
   /// In the dark, after nothing.
   void begin() {
-    switches_.assign(delays_min_.size(), {});
+    switches_.assign(n_switches_, {});
     last_motion_.assign(columns_.sensors.size(), never);
     last_behind_ = last_motion_;
     is_on_.assign(columns_.sensors.size(), true);  // since before, if it is in the first row
@@ -199,11 +207,11 @@ class Light {
     begin_people();
   }
   void begin_day(DayKind kind) {
-    days_.push_back({.kind = kind, .by_delay = decltype(DaySums::by_delay)(delays_min_.size())});
+    days_.push_back({.kind = kind, .by_delay = decltype(DaySums::by_delay)(n_switches_)});
   }
 
-  /// 0, 1, or 2 where not known. hour: of the day at its end.
-  std::uint8_t add(const Sample& row, int people, std::optional<double> hour) {
+  /// 0, 1, or 2 where not known. hour: of the day at its end. nobody: the probability that nobody is there.
+  std::uint8_t add(const Sample& row, int people, std::optional<double> hour, double nobody) {
     ++row_;
     DaySums& day = days_.back();
     if (!is_here(row, people)) return unknown_bit;
@@ -216,7 +224,7 @@ class Light {
     gap_rows_ = is_known ? 0 : gap_rows_ + 1;
     if (!is_known || people < 0) {
       ++day.unknown;
-      pass(cue, is_night(hour));
+      pass(cue, is_night(hour), nobody);
       return unknown_bit;
     }
     ++day.rows;
@@ -227,7 +235,7 @@ class Light {
     }
     const bool comes = cue.occupied && !was_occupied_;
     for (std::size_t i = 0; i < switches_.size(); ++i)
-      step(i, cue, delay_of(i, is_night(hour)), comes, day.by_delay[i]);
+      step(i, cue, delay_of(i, is_night(hour), nobody), comes, day.by_delay[i]);
     was_occupied_ = cue.occupied;
     const bool is_lit = switches_[chosen_].is_lit();
     note_spell(row, cue.occupied && !is_lit);
@@ -253,8 +261,8 @@ class Light {
 
   /// Nothing is known of who was in the dark before.
   void begin_people() {
-    entered_.assign(delays_min_.size(), -1);
-    dark_for_.assign(delays_min_.size(), 0);
+    entered_.assign(n_switches_, -1);
+    dark_for_.assign(n_switches_, 0);
     was_occupied_ = true;  // who is there already didn't come in
     end_spell();
   }
@@ -270,16 +278,19 @@ class Light {
   [[nodiscard]] bool is_night(std::optional<double> hour) const {
     return spec_.night && hour && is_between(*hour, spec_.night->from_h, spec_.night->to_h);
   }
-  [[nodiscard]] std::int64_t delay_of(std::size_t i, bool is_night) const {
+  /// Where it goes by a counter the delay never ends, or has.
+  [[nodiscard]] std::int64_t delay_of(std::size_t i, bool is_night, double nobody) const {
+    constexpr std::int64_t never_ends = -never;
+    if (i >= delay_rows_.size()) return nobody < nobody_levels[i - delay_rows_.size()] ? never_ends : 0;
     return is_night ? night_rows_ : delay_rows_[i];
   }
 
   /// A row that isn't counted. Where the sensors aren't known the light goes on as if nothing moved, and anew once that
   /// lasts longer than the delay.
-  void pass(const Cue& cue, bool is_night) {
+  void pass(const Cue& cue, bool is_night, double nobody) {
     if (gap_rows_ > std::max(delay_rows_.back(), night_rows_) + 1) return;  // all has begun anew
     for (std::size_t i = 0; i < switches_.size(); ++i) {
-      const std::int64_t delay_rows = delay_of(i, is_night);
+      const std::int64_t delay_rows = delay_of(i, is_night, nobody);
       if (gap_rows_ > delay_rows)
         switches_[i] = {};
       else
@@ -377,6 +388,7 @@ class Light {
   std::int64_t night_rows_ = 0, together_rows_ = 0;
   std::int64_t settle_rows_ = 0;  ///< from the last one that its door was open in: it shuts in the next
   std::size_t chosen_ = 0;        ///< of the delays
+  std::size_t n_switches_ = 0;    ///< those of the delays, then those by a counter
   std::vector<LightSwitch> switches_;
   std::vector<std::int64_t> entered_, dark_for_;
   std::vector<std::int64_t> last_motion_, last_behind_;  ///< (n_sensors) rows; behind: that began behind the shut door
@@ -428,15 +440,17 @@ LightCosts Light::costs(People people) const {
     costs.known_days += of_it * day->rows / in_rows;
   }
   if (covered > 0.0 && covered < 1.0) costs.known_days /= covered;  // an hour tells nothing of the others
-  const bool knows = people == People::known;
+  const bool knows = people != People::unknown;
   const auto if_known = [knows](double value) { return knows ? value : std::nan(""); };
   if (!knows) occupied.assign(occupied.size(), 0.0);
   costs.occupied_h = if_known(costs.occupied_h), costs.span_h = if_known(costs.span_h);
   const DrawnDays drawn(days.size());
-  for (std::size_t i = 0; i < delays_min_.size(); ++i) {
-    DelayCosts& at = costs.by_delay.emplace_back();
-    at.delay_min = delays_min_[i];
-    std::vector<double> lit, dark, offs;
+  for (std::size_t i = 0; i < n_switches_; ++i) {
+    const bool is_delay = i < delays_min_.size();
+    DelayCosts& at = (is_delay ? costs.by_delay : costs.by_nobody).emplace_back();
+    at.delay_min = is_delay ? delays_min_[i] : std::nan("");
+    if (!is_delay) at.nobody = nobody_levels[i - delays_min_.size()];
+    std::vector<double> lit, dark, empty, offs;
     double switched_on = 0.0;
     for (const DaySums* day : days) {
       const DelaySums& sums = day->by_delay[i];
@@ -444,7 +458,8 @@ LightCosts Light::costs(People people) const {
       dark.push_back(sums.dark * row_h);
       offs.push_back(sums.false_offs);
       at.lit_h += lit.back();
-      at.lit_empty_h += sums.lit_empty * row_h;
+      empty.push_back(sums.lit_empty * row_h);
+      at.lit_empty_h += empty.back();
       at.dark_h += dark.back();
       at.false_offs += sums.false_offs;
       switched_on += sums.switched_on;
@@ -454,6 +469,10 @@ LightCosts Light::costs(People people) const {
     at.lit_share = drawn.ratio(lit, hours);
     at.false_offs_an_hour = drawn.rate(offs, occupied);
     at.dark_share = drawn.ratio(dark, occupied);
+    if (knows)
+      at.empty_share = drawn.ratio(empty, hours);
+    else
+      at.empty_share.value = std::nan("");
     at.longest_dark_s = if_known(static_cast<double>(longest_dark_[i]) * window_s_);
     const Waits& waits = waits_[i];
     const double each_s = waits.n > 0 ? window_s_ / static_cast<double>(waits.n) : std::nan("");
@@ -468,15 +487,13 @@ LightCosts Light::costs(People people) const {
 constexpr double days_a_week = 7.0;
 
 /// Below which a Poisson mean lies in 95 of 100 cases, n events seen [WilsonHilferty1931]; within 1 %.
-double most_expected(std::int64_t n) {
+double most_expected(double n) {
   constexpr double normal_95 = 1.6449;
-  const double k = static_cast<double>(n) + 1.0;
+  const double k = n + 1.0;
   return k * std::pow(1.0 - 1.0 / (9.0 * k) + normal_95 / (3.0 * std::sqrt(k)), 3.0);
 }
 
-double a_week(const LightCosts& light, const DelayCosts& at) {
-  return days_a_week * light.a_day(static_cast<double>(at.false_offs));
-}
+double a_week(const LightCosts& light, const DelayCosts& at) { return days_a_week * light.a_day(at.false_offs); }
 /// Days differ, and few events tell little: whichever is wider.
 double at_most_a_week(const LightCosts& light, const DelayCosts& at) {
   const auto& over_days = at.false_offs_an_hour.over_days;
@@ -508,9 +525,9 @@ const DelayCosts* other_than(const LightCosts& light, double delay_min) {
 
 /// From which on all hold.
 template <typename Holds>
-const DelayCosts* first_of_rest(const LightCosts& light, Holds holds) {
+const DelayCosts* first_of_rest(const std::vector<DelayCosts>& all, Holds holds) {
   const DelayCosts* first = nullptr;
-  for (auto at = light.by_delay.rbegin(); at != light.by_delay.rend() && holds(*at); ++at) first = &*at;
+  for (auto at = all.rbegin(); at != all.rend() && holds(*at); ++at) first = &*at;
   return first;
 }
 
@@ -523,6 +540,11 @@ std::string compared(const LightCosts& light, const DelayCosts& at) {
   if (other == nullptr) return ".";
   return "; at " + minutes(*other) + " " + often(a_week(light, *other)) + ", and " +
          hours(light.a_day(other->lit_empty_h)) + ".";
+}
+
+std::string instead_of_a_delay(const LightCosts& light, const DelayCosts& at) {
+  return " Off at P(nobody) of " + percent(*at.nobody) + " instead, it goes off on somebody " +
+         often(a_week(light, at)) + ", with " + empty_light(light, at) + ".";
 }
 
 /// What is off can't go off.
@@ -538,9 +560,10 @@ std::string shown(const LightCosts& light, const DelayCosts& at) {
 }
 
 std::string best_guess(const LightCosts& light, const DelayCosts& at) {
-  const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0));
-  const std::string seen =
-      at.false_offs == 0 ? "no false-off" : counted(static_cast<std::size_t>(at.false_offs), "false-off");
+  const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0.0));
+  const std::string seen = light.people == People::expected ? fixed(at.false_offs, 1) + " false-offs expected"
+                           : at.false_offs == 0.0           ? "no false-off"
+                                                  : counted(static_cast<std::size_t>(at.false_offs), "false-off");
   const double days = std::round(10.0 * light.known_days) / 10.0;
   const std::string data = days < 1.0    ? hours(24.0 * light.known_days) + " is too little"
                            : days == 1.0 ? "1 day is too little"
@@ -666,7 +689,12 @@ Control::Control(RuleSpec rule, ColumnOwners columns, double window_s, People pe
       faults.error(light.where, "light '" + light.id + "': " + (light.manual ? "manual" : "wave_s") +
                                     " goes by who is in the dark, and the rows have no people");
     }
-    if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s);
+    if (people == People::expected && !light.area.empty()) {
+      faults.error(light.where, "light '" + light.id +
+                                    "': a counter counts the people of all its sensors, and not those "
+                                    "of an area: leave out `area`");
+    }
+    if (!faults.has_errors()) state_->lights.emplace_back(light, std::move(own), window_s, people);
   }
   faults.throw_if_errors();
   state_->lit.resize(state_->lights.size());
@@ -678,7 +706,7 @@ Control::Control(Control&&) noexcept = default;
 void Control::begin_run() noexcept { state_->replicate.reset(); }
 void Control::note_missing(std::int64_t n_rows) noexcept { state_->n_missing += n_rows; }
 
-LitRow Control::add(const Sample& row, std::string_view day) {
+LitRow Control::add(const Sample& row, std::string_view day, double nobody) {
   State& state = *state_;
   const bool is_new_run = row.replicate != state.replicate || row.trial != state.trial;
   const bool is_new_day = day.empty() ? is_new_run || !state.day.empty() : day != state.day;
@@ -692,9 +720,10 @@ LitRow Control::add(const Sample& row, std::string_view day) {
   if (ends_s) hour = static_cast<double>(((*ends_s % day_s) + day_s) % day_s) / 3600.0;
   state.has_clock = state.has_clock || ends_s;
   for (std::size_t i = 0; i < state.lights.size(); ++i) {
-    const int people = state.people == People::known ? state.lights[i].people_of(row) : 0;
-    state.lit[i] = state.lights[i].add(row, people, hour);
-    state.people_of[i] = state.people == People::known ? people : -1;
+    const bool knows = state.people != People::unknown;
+    const int people = knows ? state.lights[i].people_of(row) : 0;
+    state.lit[i] = state.lights[i].add(row, people, hour, nobody);
+    state.people_of[i] = knows ? people : -1;
   }
   return {state.lit, state.people_of, ends_s};
 }
@@ -737,6 +766,45 @@ Costs Control::finish() const {
   return costs;
 }
 
+Costs expected_of(std::span<const Costs> draws) {
+  Costs all = draws.front();
+  // known: of each draw, what isn't NaN there.
+  const auto known = [&](auto value_of) {
+    std::vector<double> values;
+    for (const Costs& draw : draws) {
+      if (const double value = value_of(draw); !std::isnan(value)) values.push_back(value);
+    }
+    return values;
+  };
+  const auto mean = [&](auto value_of) {
+    const std::vector<double> values = known(value_of);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  for (std::size_t l = 0; l < all.lights.size(); ++l) {
+    LightCosts& light = all.lights[l];
+    light.worst.clear();
+    light.occupied_h = mean([&](const Costs& draw) { return draw.lights[l].occupied_h; });
+    light.span_h = mean([&](const Costs& draw) { return draw.lights[l].span_h; });
+    for (std::vector<DelayCosts> LightCosts::*of : {&LightCosts::by_delay, &LightCosts::by_nobody}) {
+      for (std::size_t i = 0; i < (light.*of).size(); ++i) {
+        DelayCosts& at = (light.*of)[i];
+        for (double DelayCosts::*sum : {&DelayCosts::lit_h, &DelayCosts::switched_on_a_day, &DelayCosts::lit_empty_h,
+                                        &DelayCosts::dark_h, &DelayCosts::false_offs, &DelayCosts::longest_dark_s,
+                                        &DelayCosts::mean_wait_s, &DelayCosts::longest_wait_s})
+          at.*sum = mean([&](const Costs& draw) { return (draw.lights[l].*of)[i].*sum; });
+        for (Figure DelayCosts::*figure : {&DelayCosts::lit_share, &DelayCosts::false_offs_an_hour,
+                                           &DelayCosts::dark_share, &DelayCosts::empty_share}) {
+          const auto value_of = [&](const Costs& draw) { return ((draw.lights[l].*of)[i].*figure).value; };
+          std::vector<double> values = known(value_of);
+          at.*figure = {mean(value_of), {}};
+          if (!values.empty()) (at.*figure).over_days = middle_of(std::move(values));
+        }
+      }
+    }
+  }
+  return all;
+}
+
 Advice advise(const LightCosts& light) {
   using Ground = Advice::Ground;
   const std::string name = light.id + ": ";
@@ -746,11 +814,14 @@ Advice advise(const LightCosts& light) {
   const auto is_below = [&](auto rate) {
     return [&light, rate](const DelayCosts& at) { return rate(light, at) < light.at_most_a_week; };
   };
-  if (const DelayCosts* at = first_of_rest(light, is_below(at_most_a_week)))
-    return {Ground::shown, at->delay_min, name + shown(light, *at)};
-  if (const DelayCosts* at = first_of_rest(light, is_below(a_week)))
-    return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at)};
-  return {Ground::no_delay, {}, name + no_delay(light)};
+  const auto first = [&](auto rate) { return first_of_rest(light.by_delay, is_below(rate)); };
+  const DelayCosts* by_counter = first_of_rest(light.by_nobody, is_below(a_week));
+  const std::string counter = by_counter == nullptr ? "" : instead_of_a_delay(light, *by_counter);
+  if (const DelayCosts* at = first(at_most_a_week))
+    return {Ground::shown, at->delay_min, name + shown(light, *at) + counter};
+  if (const DelayCosts* at = first(a_week))
+    return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at) + counter};
+  return {Ground::no_delay, {}, name + no_delay(light) + counter};
 }
 
 RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,

@@ -17,6 +17,8 @@ namespace {
 
 constexpr int decimals = 6;
 
+bool knows_people(const LightCosts& light) { return light.people != People::unknown; }
+
 /// Empty where it isn't known.
 Cell number(double value) { return std::isnan(value) ? Cell() : Cell(value); }
 template <double LightCosts::*member>
@@ -44,7 +46,8 @@ constexpr std::string_view low = "low end of its interval over days", high = "hi
 
 constexpr Column<CostLine> costs_by_delay[]{
     {{"light", Holds::text, "its id"}, [](const CostLine& line) -> Cell { return line.light.id; }},
-    {info("delay_min", "from the last motion until it goes off", "min"), of_delay<&DelayCosts::delay_min>},
+    {info("delay_min", "from the last motion until it goes off; empty: it goes by `nobody`", "min"),
+     of_delay<&DelayCosts::delay_min>},
     {{"days", Holds::count, "of the rows"}, [](const CostLine& line) -> Cell { return line.light.days; }},
     {info("hours", "in which all of its sensors are known", "h"), of_light<&LightCosts::hours>},
     {info("occupied_h", "of them, with somebody there", "h"), of_light<&LightCosts::occupied_h>},
@@ -55,8 +58,8 @@ constexpr Column<CostLine> costs_by_delay[]{
     {info("lit_share_low", low), end_of<&DelayCosts::lit_share, &Interval::low>},
     {info("lit_share_high", high), end_of<&DelayCosts::lit_share, &Interval::high>},
     {info("switched_on_a_day", "how often"), of_delay<&DelayCosts::switched_on_a_day>},
-    {{"false_offs", Holds::count, "how often it went off while somebody was there"},
-     [](const CostLine& line) { return line.light.people == People::known ? Cell(line.at.false_offs) : Cell(); }},
+    {info("false_offs", "how often it went off while somebody was there"),
+     [](const CostLine& line) { return knows_people(line.light) ? Cell(line.at.false_offs) : Cell(); }},
     {info("false_offs_an_hour", "of occupied time"), value_of<&DelayCosts::false_offs_an_hour>},
     {info("false_offs_an_hour_low", low), end_of<&DelayCosts::false_offs_an_hour, &Interval::low>},
     {info("false_offs_an_hour_high", high), end_of<&DelayCosts::false_offs_an_hour, &Interval::high>},
@@ -66,6 +69,11 @@ constexpr Column<CostLine> costs_by_delay[]{
     {info("longest_dark_s", "somebody was in the dark without a break", "s"), of_delay<&DelayCosts::longest_dark_s>},
     {info("mean_wait_s", "from coming into an empty area to light", "s"), of_delay<&DelayCosts::mean_wait_s>},
     {info("longest_wait_s", "the longest of these", "s"), of_delay<&DelayCosts::longest_wait_s>},
+    {info("empty_share", "of all hours, with light while nobody was there"), value_of<&DelayCosts::empty_share>},
+    {info("empty_share_low", low), end_of<&DelayCosts::empty_share, &Interval::low>},
+    {info("empty_share_high", high), end_of<&DelayCosts::empty_share, &Interval::high>},
+    {info("nobody", "it goes off once a counter gives so much to nobody being there; empty: after a delay"),
+     [](const CostLine& line) { return line.at.nobody ? Cell(*line.at.nobody) : Cell(); }},
 };
 
 std::string minutes(double delay_min) { return shortest_number(delay_min) + " min"; }
@@ -100,7 +108,7 @@ struct TableRow {
 };
 
 void add(io::Table& table, const LightCosts& light, const TableRow& row) {
-  const bool knows = light.people == People::known;
+  const bool knows = knows_people(light);
   std::vector<std::string> texts{row.delay};
   if (knows) texts.insert(texts.end(), {row.offs, row.offs_an_hour, row.dark, row.longest_dark});
   texts.push_back(row.lit);
@@ -116,22 +124,23 @@ io::Table table_of(const LightCosts& light) {
   add(table, light,
       {"delay, min", "off on somebody", "an occupied hour", "dark, %", "longest", "lit, h/day", "empty, h/day",
        "switched on", "wait", "kWh/day"});
-  for (const double delay : told_delays(light)) {
-    const DelayCosts& at = light.at(delay);
+  const auto tell = [&](const std::string& name, const DelayCosts& at) {
     add(table, light,
-        {shortest_number(delay), std::to_string(at.false_offs),
+        {name, fixed(at.false_offs, light.people == People::expected ? 1 : 0),
          told(at.false_offs_an_hour.value, 2) + range(at.false_offs_an_hour, 1.0, 2),
          told(100.0 * at.dark_share.value, 1) + range(at.dark_share, 100.0, 1), time(at.longest_dark_s),
          fixed(light.a_day(at.lit_h), 2), fixed(light.a_day(at.lit_empty_h), 2), fixed(at.switched_on_a_day, 1),
          std::isnan(at.mean_wait_s) ? "-" : time(at.mean_wait_s), energy(light, at.lit_h)});
-  }
+  };
+  for (const double delay : told_delays(light)) tell(shortest_number(delay), light.at(delay));
+  for (const DelayCosts& at : light.by_nobody) tell("P(nobody) " + percent(*at.nobody), at);
   const auto compare = [&](const std::string& name, double hours) {
     add(table, light,
         {name, "", "", "", "", fixed(light.a_day(hours), 2), fixed(light.a_day(hours - light.occupied_h), 2), "", "",
          energy(light, hours)});
   };
   compare("always on", light.hours);
-  if (light.people == People::known) {
+  if (knows_people(light)) {
     compare("first in, last out", light.span_h);
     compare("ideal", light.occupied_h);
   }
@@ -188,7 +197,7 @@ std::vector<io::Chart> charts_of(const LightCosts& light) {
   std::vector<Line> lines{curve(light, "lit", [&](const DelayCosts& at) {
     return io::LineChart::Point{at.delay_min, light.a_day(at.lit_h), {}, {}};
   })};
-  if (light.people == People::known) {
+  if (knows_people(light)) {
     lines.push_back(curve(light, "lit and empty", [&](const DelayCosts& at) {
       return io::LineChart::Point{at.delay_min, light.a_day(at.lit_empty_h), {}, {}};
     }));
@@ -239,8 +248,7 @@ io::ReportSection worst_section(const LightCosts& light, const std::string& view
 
 /// Of one light, or of several together, by their first delays.
 struct Sums {
-  double occupied_h = 0.0, dark_h = 0.0, lit_a_day = 0.0, empty_a_day = 0.0;
-  std::int64_t false_offs = 0;
+  double occupied_h = 0.0, dark_h = 0.0, lit_a_day = 0.0, empty_a_day = 0.0, false_offs = 0.0;
 
   void add(const LightCosts& light) {
     const DelayCosts& at = light.at(light.rule_delays_min.front());
@@ -250,13 +258,11 @@ struct Sums {
     empty_a_day += light.a_day(at.lit_empty_h);
     false_offs += at.false_offs;
   }
-  [[nodiscard]] double offs_an_hour() const { return static_cast<double>(false_offs) / occupied_h; }
+  [[nodiscard]] double offs_an_hour() const { return false_offs / occupied_h; }
   [[nodiscard]] double dark_share() const { return dark_h / occupied_h; }
 };
 
-bool know_people(const Costs& costs) {
-  return std::ranges::all_of(costs.lights, [](const LightCosts& light) { return light.people == People::known; });
-}
+bool know_people(const Costs& costs) { return std::ranges::all_of(costs.lights, knows_people); }
 
 std::string with_which_delay(const Costs& costs) {
   const double first = costs.lights.front().rule_delays_min.front();
@@ -330,7 +336,9 @@ std::string to_csv(const Costs& costs) {
   std::ostringstream text;
   io::TableWriter<CostLine> csv(text);
   for (const LightCosts& light : costs.lights) {
-    for (const DelayCosts& at : light.by_delay) csv.write({light, at});
+    for (const auto* all : {&light.by_delay, &light.by_nobody}) {
+      for (const DelayCosts& at : *all) csv.write({light, at});
+    }
   }
   return text.str();
 }
@@ -439,12 +447,23 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   report.paragraphs = {
       "Every sensor reading switches the light as the rule says, once for every delay. What people do isn't changed by "
       "it: who sits in the dark doesn't wave. So a light that went off stays off until somebody moves anyway."};
+  const bool is_expected = costs.lights.front().people == People::expected;
+  if (is_expected) {
+    report.paragraphs.emplace_back(
+        "Nobody counted the people of these rows. A counter tells who may have been there; figures are means over what "
+        "is likely, with the middle 90 % of it in parentheses. P(nobody) 90 %: instead of a delay, the light goes off "
+        "once the counter, by what it has seen until then, gives 90 % to nobody being there, and motion brings it "
+        "back.");
+  }
   if (know_people(costs)) {
     report.paragraphs.emplace_back(
         "In the tables: off on somebody, how often it went off while somebody was in its area, and the same an "
-        "occupied hour, with the middle 90 % of what days drawn with replacement give in parentheses. None in five "
-        "days doesn't mean never: the range then reaches to what so many hours can't rule out. Dark: share of occupied "
-        "time; longest, the longest such time. Empty: lit while nobody is there. "
+        "occupied hour" +
+        std::string(is_expected ? ". "
+                                : ", with the middle 90 % of what days drawn with replacement give in parentheses. "
+                                  "None in five days doesn't mean never: the range then reaches to what so many hours "
+                                  "can't rule out. ") +
+        "Dark: share of occupied time; longest, the longest such time. Empty: lit while nobody is there. "
         "Switched on: times a day. Wait: from coming into an empty area to light, on average; the delay hardly matters "
         "for it. First in, last out: lit from the day's first person to its last. Ideal: lit while somebody is there; "
         "less than that is dark time, and no saving.");
@@ -458,7 +477,7 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
     section.paragraphs = {
         "Switched by " + joined(light.sensors, ", ") + ". " + counted(static_cast<std::size_t>(light.days), "day") +
         ", " + fixed(light.hours, 1) + " hours" +
-        (light.people == People::known ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
+        (knows_people(light) ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
     if (costs.lights.size() > 1) section.paragraphs.insert(section.paragraphs.begin(), advise(light).sentence);
     section.tables.push_back(table_of(light));

@@ -1,10 +1,12 @@
-// The tables of docs/counting.md, as CSV: pirsim_own_room_data POOL TARGETS...
+// The tables of docs/counting.md, as CSV: pirsim_own_room_data [--light] POOL TARGETS...
 // POOL and TARGETS are datasets (docs/counting.md says of which recipes), with two sensors in each room. Of the targets
-// NAME:odd stands for the first sixty rooms of NAME with sensors that died, a cat, and a fan.
+// NAME:odd stands for the first sixty rooms of NAME with sensors that died, a cat, and a fan. --light: what light
+// costs, as a counter expects it and in truth.
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <iostream>
+#include <numeric>
 #include <random>
 #include <string>
 #include <utility>
@@ -12,6 +14,7 @@
 
 #include "logs/calibrate.hpp"
 #include "pirsim/calibrate.hpp"
+#include "pirsim/control.hpp"
 
 namespace {
 
@@ -108,14 +111,83 @@ void tell(const std::string& name, int room, const calibrate::Pool& pool, const 
     for (counting::RoomModel& model : alike.rooms) model.weight = model.liveliness == 1.0 ? 1.0 : 0.0;
     for (counting::RoomModel& model : alike.rooms) model.weight /= static_cast<double>(pool.rooms().size());
     const double smoothed = error_of(made.counter, scored, Pass::smoothed);
+    std::vector<counting::Estimates> told;
+    for (Stretch day : scored) {
+      day.people.clear();
+      told.push_back(counting::estimate(made.counter, day, Pass::smoothed));
+    }
+    const calibrate::FigureErrors figures = calibrate::figure_errors(told, scored, step_s);
     const Held held = held_of(made.counter, scored);
     std::cout << name << ',' << room << ',' << n_log;
     for (const int people : {1, 2, 3}) std::cout << ',' << error_of_any(scored, people, five_min);
     std::cout << ',' << error_of_any(scored, 2, five_min, fifteen_min) << ',' << error_of(alike, scored, Pass::smoothed)
               << ',' << error_of(made.counter, scored, Pass::forward) << ',' << smoothed << ',' << held.sure << ','
               << held.sure_right << ',' << held.occupied << ',' << held.in_band << ',' << made.p << ','
-              << (made.counter.expected_error && made.counter.expected_error->contains(smoothed) ? 1 : 0) << '\n';
+              << (made.counter.expected_error && made.counter.expected_error->contains(smoothed) ? 1 : 0);
+    for (std::size_t f = 0; f < figures.size(); ++f) {
+      const counting::Off off =
+          made.counter.figures_off.value_or(counting::FiguresOff{}).*counting::figure_names[f].off;
+      std::cout << ',' << std::accumulate(figures[f].begin(), figures[f].end(), 0.0) << ',' << figures[f].size() << ','
+                << std::ranges::count_if(figures[f], [&](double error) { return error <= off.most + 1e-9; });
+    }
+    std::cout << '\n';
   }
+}
+
+/// Light of any sensor's motion by (days)(readings) of people; nobody: as Control has it.
+control::Costs light_of(std::span<const Stretch> days, const std::vector<std::vector<int>>& people,
+                        const std::vector<std::vector<double>>& nobody) {
+  control::Control light(control::RuleSpec{"light", {{}}}, {{"PIR1", "PIR2"}, {}, {}}, step_s,
+                         control::People::expected);
+  Sample row;
+  for (std::size_t d = 0; d < days.size(); ++d) {
+    row.replicate = static_cast<int>(d) + 1;
+    for (std::size_t i = 0; i < days[d].n_readings(); ++i) {
+      row.time_s = step_s * static_cast<double>(i + 1);
+      row.bits = {days[d].motion[n_sensors * i], days[d].motion[n_sensors * i + 1]};
+      row.people = people[d][i];
+      light.add(row, {}, nobody[d][i]);
+    }
+  }
+  return light.finish();
+}
+
+void tell_light(const std::string& name, int room, const calibrate::Pool& pool, const std::vector<Stretch>& days) {
+  const std::vector<Stretch> log = unlabelled(days);
+  const Counter counter = pool.calibrate(log, log).counter;
+  constexpr int n_draws = 100;
+  std::vector<std::vector<int>> truth;
+  std::vector<std::vector<double>> nobody;
+  std::vector<std::vector<std::vector<int>>> courses(n_draws);
+  for (std::size_t d = 0; d < log.size(); ++d) {
+    truth.push_back(days[d].people);
+    const counting::Estimates forward = counting::estimate(counter, log[d], Pass::forward);
+    std::vector<double>& of_day = nobody.emplace_back();
+    for (std::size_t i = 0; i < log[d].n_readings(); ++i)
+      of_day.push_back(forward.probabilities[i * static_cast<std::size_t>(forward.n_counts)]);
+    const auto drawn = counting::draw_people(counter, log[d], n_draws);
+    for (int draw = 0; draw < n_draws; ++draw)
+      courses[static_cast<std::size_t>(draw)].push_back(drawn[static_cast<std::size_t>(draw)]);
+  }
+  std::vector<control::Costs> costs;
+  for (const auto& course : courses) costs.push_back(light_of(log, course, nobody));
+  const control::LightCosts expected = control::expected_of(costs).lights.front();
+  const control::LightCosts real = light_of(log, truth, nobody).lights.front();
+  const auto tell = [&](const std::string& when, const control::DelayCosts& told,
+                        const control::DelayCosts& true_costs) {
+    std::cout << name << ',' << room << ',' << when;
+    for (const auto figure : {&control::DelayCosts::false_offs_an_hour, &control::DelayCosts::dark_share,
+                              &control::DelayCosts::empty_share}) {
+      const Interval interval = (told.*figure).over_days.value_or(Interval{});
+      std::cout << ',' << (true_costs.*figure).value << ',' << (told.*figure).value << ',' << interval.low << ','
+                << interval.high;
+    }
+    std::cout << '\n';
+  };
+  for (std::size_t i = 0; i < expected.by_delay.size(); ++i)
+    tell(std::to_string(static_cast<int>(expected.by_delay[i].delay_min)), expected.by_delay[i], real.by_delay[i]);
+  for (std::size_t i = 0; i < expected.by_nobody.size(); ++i)
+    tell("nobody " + std::to_string(*expected.by_nobody[i].nobody), expected.by_nobody[i], real.by_nobody[i]);
 }
 
 /// What a recipe hasn't got, in readings of a room that it has.
@@ -141,10 +213,20 @@ std::vector<std::pair<std::string, std::vector<Stretch>>> odd_days(const std::ve
 }
 
 void run(std::span<char*> arguments) {
+  const bool is_light = std::string(arguments[0]) == "--light";
+  if (is_light) arguments = arguments.subspan(1);
   const calibrate::Pool pool(calibrate::read_pool(arguments[0], n_sensors, step_s));
-  std::cout
-      << "set,room,log_days,any_1,any_2,any_3,any_2_closed,alike,forward,smoothed,sure,sure_right,occupied,in_band,p,"
-         "stated_holds\n";
+  if (is_light)
+    std::cout
+        << "set,room,goes_off,offs,offs_told,offs_low,offs_high,dark,dark_told,dark_low,dark_high,empty,empty_told,"
+           "empty_low,empty_high\n";
+  else
+    std::cout
+        << "set,room,log_days,any_1,any_2,any_3,any_2_closed,alike,forward,smoothed,sure,sure_right,occupied,in_band,p,"
+           "stated_holds";
+  for (const auto& [figure, off] : counting::figure_names)
+    if (!is_light) std::cout << ',' << figure << "_sum," << figure << "_n," << figure << "_held";
+  if (!is_light) std::cout << '\n';
   constexpr const char* odd = ":odd";
   for (const std::string name : arguments.subspan(1)) {
     const bool is_odd = name.ends_with(odd);
@@ -152,6 +234,8 @@ void run(std::span<char*> arguments) {
     targets.resize(std::min(targets.size(), is_odd ? most_odd_rooms : most_rooms));
     std::mt19937 random(7);
     for (const calibrate::PoolRoom& room : targets) {
+      if (is_light) tell_light(name, room.labelled.number, pool, room.labelled.days);
+      if (is_light) continue;
       if (!is_odd) tell(name, room.labelled.number, pool, room.labelled.days);
       if (!is_odd) continue;
       for (const auto& [what, days] : odd_days(room.labelled.days, random))

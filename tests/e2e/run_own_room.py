@@ -208,6 +208,32 @@ class OwnRoom(unittest.TestCase):
         without, _ = run("count", self.made / "counter.json", "--log", *self.log, "-q")
         self.assertEqual(with_counts, without)
 
+    def test_light_by_a_counter_is_the_truth_where_people_are_counted_and_an_interval_where_not(self):
+        counter = ("--counter", self.made / "counter.json")
+        out = [self.folder / name for name in ("truth.csv", "held.csv", "told.csv", "lit.csv")]
+        run("control", "--log", *self.labelled, "--step", 30, "-o", out[0], "-q")
+        run("control", "--log", *self.labelled, *counter, "-o", out[1], "-q")
+        page = self.folder / "light.html"
+        said, _ = run("control", "--log", *self.log, *counter, "-o", out[2], "--light", out[3], "--report", page)
+        self.assertIn("Off at P(nobody) of", said)
+        self.assertIn("Nobody counted the people of these rows", page.read_text())
+        truth, held, told = (list(table(file)) for file in out[:3])
+        delays = [row for row in told if row["delay_min"]]
+        self.assertEqual([row["nobody"] for row in told[len(delays):]], ["0.5", "0.7", "0.8", "0.9", "0.95", "0.98", "0.99"])
+        uncertain = 0
+        for so, known, expected in zip(truth, held, delays, strict=False):
+            for name in ("false_offs", "dark_h", "lit_empty_h", "lit_h", "switched_on_a_day"):
+                self.assertAlmostEqual(float(so[name]), float(known[name]), 5, (so["delay_min"], name))
+            self.assertEqual(so["lit_h"], expected["lit_h"])
+            uncertain += float(expected["empty_share_high"]) > float(expected["empty_share_low"])
+        self.assertGreater(uncertain, 50)
+        people = [row["people_light"] for row in table(out[3])]
+        counts = [row["people"] for row in csv.DictReader(run("count", counter[1], "--log", *self.log, "-q")[0].splitlines())]
+        self.assertEqual(people, counts)
+        for wrong, why in ((("--log", *self.log, *counter, "--step", 1), "--step"),
+                           ((out[0], *counter), "it counts the people of a --log")):
+            self.assertIn(why, run("control", *wrong, code=2)[1])
+
     def test_what_cant_be_calibrated_or_counted_is_refused_in_words(self):
         three = self.write("three.csv", "time,A,B,C\n2026-03-02T08:00:30,0,1,0\n2026-03-02T08:01:00,1,0,0\n"
                                         "2026-03-02T08:01:30,1,1,1\n")

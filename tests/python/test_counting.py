@@ -31,7 +31,9 @@ def random_counter(shape, seed=0, n_rooms=3):
               "versions": [version(liveliness) for liveliness in ((0.5, 2.0) if r == 1 else (1.0,))]}
              for r in range(n_rooms)]
     return {"pirsim_counter": 2, "step_s": 30.0, "modes": modes, "sensors": n_sensors, "counts": n_counts,
-            "rooms": rooms, "expected_error": [0.25, 0.5]}
+            "rooms": rooms, "expected_error": [0.25, 0.5],
+            "figures_off": {name: [0.5, 1.0] for name in ("occupied_h", "arrival_min", "departure_min", "most",
+                                                          "hour_nobody", "hour_mean", "hour_most")}}
 
 
 def models_of(saved):
@@ -268,7 +270,7 @@ def test_nobody_is_counted_where_nothing_has_been_known_for_five_minutes(load, t
     assert [live.next(reading)[0] >= 0 for reading in bits] == [i in told for i in range(100)]
     assert live.people is not None
     estimates.write_csv(tmp_path / "counts.csv")
-    assert (tmp_path / "counts.csv").read_text().splitlines()[41] == "1230,,,,,"
+    assert (tmp_path / "counts.csv").read_text().splitlines()[41] == "1230,,,,,,,"
     pytest.importorskip("pandas")
     assert estimates.to_pandas()["people"].isna().sum() == 30
 
@@ -336,14 +338,29 @@ def test_a_log_is_counted_as_on_the_command_line(forward, load, command, tmp_pat
     counter = load(random_counter((2, 3, 2)))
     write_log(tmp_path / "log.csv")
     printed = command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward)
+    tables = {name: tmp_path / f"{name}.csv" for name in ("days", "hours")}
+    command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward,
+            *(word for name, file in tables.items() for word in (f"--{name}", file)))
     estimates = counter.estimate(tmp_path / "log.csv", smoothed=not forward)
     estimates.write_csv(tmp_path / "counts.csv")
     assert (tmp_path / "counts.csv").read_bytes().decode() == printed and printed.count("\n") == 241
     rows = [line.split(",") for line in printed.splitlines()]
     frame = estimates.to_pandas()
-    assert list(frame.columns) == rows[0] == ["time", "people", "mean", "p0", "p1", "p2"]
+    assert list(frame.columns) == rows[0] == ["time", "people", "mean", "least", "most", "p0", "p1", "p2"]
+    assert frame[["least", "most"]].to_numpy().tolist() == [[int(end) for end in row[3:5]] for row in rows[1:]]
+    assert (frame["least"] <= frame["people"]).all() and (frame["people"] <= frame["most"]).all()
+    for name, figures in (("days", estimates.days), ("hours", estimates.hours)):
+        lines = [line.split(",") for line in tables[name].read_text().splitlines()]
+        assert lines[0] == list(figures) and len(lines) > 1
+        for i, cells in enumerate(zip(*lines[1:])):
+            column = figures[lines[0][i]]
+            told = [cell == "" if column.dtype.kind == "f" and np.isnan(value) else
+                    cell == value if column.dtype.kind == "U" else abs(float(cell) - value) < 0.000501
+                    for cell, value in zip(cells, column)]
+            assert all(told), lines[0][i]
+        assert np.isnan(figures["most_off"]).all() if forward else np.nanmin(figures["most_off"]) > 0
     assert [str(time.astype("datetime64[s]")) for time in estimates.time] == [row[0] for row in rows[1:]]
     assert frame["people"].tolist() == [int(row[1]) for row in rows[1:]]
     np.testing.assert_allclose(frame[["mean"]].to_numpy()[:, 0], [float(row[2]) for row in rows[1:]], atol=0.00501)
-    np.testing.assert_allclose(frame[["p0", "p1", "p2"]].to_numpy(), [[float(p) for p in row[3:]] for row in rows[1:]],
+    np.testing.assert_allclose(frame[["p0", "p1", "p2"]].to_numpy(), [[float(p) for p in row[5:]] for row in rows[1:]],
                                atol=0.000501)

@@ -138,7 +138,8 @@ class HiddenMarkovCounter:
         readings = readings_of(log, self.step_s, map)
         probabilities, remarks = _core.estimate(self._handle, readings.core, readings.traits, smoothed)
         warn_of(remarks)
-        return estimates_of(readings, probabilities, self.expected_error)
+        return (estimates_of(readings, probabilities, self.expected_error, self._handle.figures_off) if smoothed
+                else estimates_of(readings, probabilities))
 
     def live(self) -> LiveCount:
         """Counts reading by reading, as they come: what estimate(..., smoothed=False) gives."""

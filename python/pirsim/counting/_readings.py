@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Mapping, NamedTuple, Union
 
 import numpy as np
@@ -176,7 +177,9 @@ class Estimates:
     time: npt.NDArray[Any]
     """[reading] its end: local time (datetime64[us]), or seconds for a log that tells no time of day."""
     expected_error: tuple[float, float] | None
-    """Of the counter."""
+    """Of the counter; None of counts by what came before alone."""
+    figures_off: dict[str, tuple[float, float]] | None = field(repr=False)
+    """How far off `days` and `hours` are, on average, and in nine of ten cases at most; None: that isn't known."""
     _readings: Readings = field(repr=False)
 
     def __repr__(self) -> str:
@@ -191,6 +194,29 @@ class Estimates:
         """[reading] mean of the distribution, NaN where nobody knows."""
         return self.probabilities @ np.arange(self.probabilities.shape[1])
 
+    @cached_property
+    def band(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """[reading] the least and the most of the shortest run of counts that has nine tenths of the odds; -1 where
+        nobody knows."""
+        least, most = _core.bands(np.ascontiguousarray(self.probabilities))
+        return least, most
+
+    @property
+    def days(self) -> dict[str, npt.NDArray[Any]]:
+        """[day] the columns of `pirsim count --days`: hours with somebody, arrival, departure, most people, and how far
+        off each is; texts, or numbers that are NaN where nothing is known. pandas.DataFrame() takes them."""
+        return self._figures[0]
+
+    @property
+    def hours(self) -> dict[str, npt.NDArray[Any]]:
+        """[hour of the day] the columns of `pirsim count --hours`: P(nobody), people, the most of them."""
+        return self._figures[1]
+
+    @cached_property
+    def _figures(self) -> tuple[dict[str, npt.NDArray[Any]], ...]:
+        tables = _core.figures(self._readings.core, np.ascontiguousarray(self.probabilities), self.figures_off)
+        return tuple({name: np.array(cells) for name, cells in table.items()} for table in tables)
+
     def to_pandas(self) -> pandas.DataFrame:
         """A row a reading, with the columns of write_csv(); what is unknown is missing."""
         import pandas as pd
@@ -198,16 +224,19 @@ class Estimates:
         time = "time" if self.time.dtype.kind == "M" else "time_s"
         columns: dict[str, Any] = {time: self.time, "people": pd.arrays.IntegerArray(self.people.copy(), self.people < 0),
                                    "mean": self.mean}
+        for name, ends in zip(("least", "most"), self.band):
+            columns[name] = pd.arrays.IntegerArray(ends.copy(), ends < 0)
         columns.update((f"p{n}", column) for n, column in enumerate(self.probabilities.T))
         return pd.DataFrame(columns)
 
     def write_csv(self, file: PathOr) -> None:
-        """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count.
+        """As `pirsim count` writes it: time of a reading's end, people, their mean, `band`, each count's probability.
         Raises UsageError for the file of the log."""
         keep_inputs([("file", file)], [("log", one) for one in self._readings.files])
         write(file, _core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
 
 
-def estimates_of(readings: Readings, probabilities: Any, expected_error: tuple[float, float] | None) -> Estimates:
+def estimates_of(readings: Readings, probabilities: Any, expected_error: tuple[float, float] | None = None,
+                 figures_off: dict[str, tuple[float, float]] | None = None) -> Estimates:
     time = readings.end_us.view("datetime64[us]") if readings.has_clock else readings.end_us * 1e-6
-    return Estimates(middle_count(probabilities), probabilities, time, expected_error, readings)
+    return Estimates(middle_count(probabilities), probabilities, time, expected_error, figures_off, readings)

@@ -200,6 +200,7 @@ TEST_CASE(
     errors.stated.emplace_back(r % 2 == 0 ? 0.3 : 0.5);
     weights.push_back(r == 4 ? 1.0 : 0.0);  // whatever they weigh
   }
+  errors.figures[3] = {0.5, 0.5};
   const auto expected = [&](double stated) {
     Calibration made;
     expect_error(errors, weights, stated, made);
@@ -214,10 +215,12 @@ TEST_CASE(
   }
   const Calibration twice = expected(0.8);
   CHECK(twice.counter.expected_error->high == Approx(1.9));
+  CHECK(twice.counter.figures_off->most.mean == Approx(1.0));
   CHECK(twice.mean_error == Approx(0.4));
   CHECK(twice.error_alike == Approx(0.8));
   errors.weighed[3].reset();  // nobody was in the one room that has any weight
   CHECK_FALSE(expected(0.4).counter.expected_error);
+  CHECK_FALSE(expected(0.4).counter.figures_off);
 }
 
 TEST_CASE("More days than the rooms have weigh the rooms no further, and other settings than the rooms' are refused") {
@@ -427,7 +430,8 @@ TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
   counts.estimates = {2, {0.1, 0.9, nan, nan, 1.0, 0.0}};
   std::ostringstream text;
   write_counts(text, counts);
-  CHECK(text.str() == "time_s,people,mean,p0,p1\n1800,1,0.90,0.100,0.900\n3600,,,,\n5400,0,0.00,1.000,0.000\n");
+  CHECK(text.str() ==
+        "time_s,people,mean,least,most,p0,p1\n1800,1,0.90,1,1,0.100,0.900\n3600,,,,,,\n5400,0,0.00,0,0,1.000,0.000\n");
   CHECK(how_sure(counts) ==
         "Somebody is there for 0.5 h; the number is told with 80 % or more for 0.5 h of them. For 0.5 h nothing is "
         "known, and no number is told.");
@@ -439,6 +443,75 @@ TEST_CASE("Where nobody knows, cells of counts are empty and no hour counts") {
   std::stringstream page;
   page << std::ifstream(folder.path() / "page.html").rdbuf();
   CHECK_THAT(page.str(), contains("\"n\":null") && contains("unknown, h"));
+}
+
+TEST_CASE("Days and hours of a counted log are what one sums up by hand, with how far off they may be") {
+  LogCounts counts;
+  counts.rows.sensors = {"a"};
+  counts.rows.window_s = 1800.0;
+  counts.rows.clock = LogClock::local;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::int64_t first = 1'772'496'000LL * 1'000'000 - 1'800'000'000;  // 2026-03-02, 23:30
+  counts.estimates.n_counts = 3;
+  const auto add = [&](int half_hours, std::vector<double> odds) {
+    counts.rows.begin.push_back({first + half_hours * std::int64_t{1'800'000'000}, 0});
+    counts.rows.motion.push_back(0), counts.rows.people.push_back(-1);
+    counts.estimates.probabilities.insert(counts.estimates.probabilities.end(), odds.begin(), odds.end());
+  };
+  add(0, {0.2, 0.8, 0.0});                           // the first date
+  add(1, {1.0, 0.0, 0.0}), add(2, {0.0, 0.5, 0.5});  // 0:00 of the second
+  add(3, {0.4, 0.1, 0.5}), add(4, {nan, nan, nan});  // 1:00
+  for (int i = 5; i < 48; ++i) add(i, {0.9, 0.1, 0.0});
+  add(48, {0.1, 0.0, 0.9});
+  counts.figures_off.emplace();
+  counts.figures_off->arrival_min = {3.0, 14.0};
+  const std::vector<CountedDay> days = counted_days(counts);
+  REQUIRE(days.size() == 2);
+  CHECK(days[0].date == "2026-03-02");
+  CHECK(days[0].arrival == "23:30:00");
+  CHECK(days[0].departure == "00:00:00");
+  CHECK(days[0].figures.occupied_h == Approx(0.4));
+  CHECK(days[1].figures.told_h == Approx(23.5));
+  CHECK(days[1].figures.occupied_h == Approx(0.5 * (1.0 + 0.6 + 43 * 0.1 + 0.9)));
+  CHECK(days[1].arrival == "00:30:00");
+  CHECK(days[1].departure == "00:00:00");
+  CHECK(days[1].figures.most == 2);
+  CHECK_THAT(to_csv(days), contains(",23:30:00,14,00:00:00,0,1,0\n"));
+  const std::vector<CountedHour> hours = counted_hours(counts);
+  REQUIRE(hours.size() == 24);
+  CHECK(hours[0].mean == Approx(0.75));
+  CHECK(hours[0].nobody == Approx(0.5));
+  CHECK(hours[1].mean == Approx(1.1));  // of what is told
+  CHECK(hours[23].days == 2);
+  CHECK(hours[23].nobody == Approx(0.5 * (0.2 + 0.5)));
+  CHECK(hours[23].most == Approx(0.5 * (1.0 + 2.0)));
+  counts.figures_off.reset();
+  CHECK_THAT(to_csv(counted_days(counts)), contains(",23:30:00,,00:00:00,,1,\n"));
+}
+
+TEST_CASE("Errors of figures are those between what is told and what is so, larger where more is expected") {
+  const Stretch day{1, {0, 1, 1, 0, 0, 1}, {0, 1, 2, 0, 0, 0}};
+  counting::Estimates told{3, {1, 0, 0, /**/ 0.6, 0.4, 0, /**/ 0, 1, 0, /**/ 0, 1, 0, /**/ 1, 0, 0, /**/ 1, 0, 0}};
+  const FigureErrors errors = figure_errors(std::span(&told, 1), std::span(&day, 1), 1800.0);
+  const auto of = [&](const std::string& name) {
+    const auto* at =
+        std::ranges::find(counting::figure_names, name, [](const auto& one) { return std::string(one.name); });
+    return errors[static_cast<std::size_t>(at - std::begin(counting::figure_names))];
+  };
+  CHECK(of("occupied_h")[0] == Approx(0.5 * std::abs(2.4 - 2.0)));
+  CHECK(of("arrival_min")[0] == Approx(30.0));
+  CHECK(of("departure_min")[0] == Approx(30.0));
+  CHECK(of("most")[0] == Approx(1.0));
+  REQUIRE(of("hour_mean").size() == 3);
+  CHECK(of("hour_mean")[0] == Approx(0.5 * std::abs(0.4 - 1.0)));
+  CHECK(of("hour_nobody")[1] == Approx(0.5));
+  CHECK(of("hour_most")[1] == Approx(1.0));
+  FigureErrors many;
+  for (int i = 0; i <= 100; ++i) many[0].push_back(i);
+  const counting::FiguresOff off = figures_off(many, 2.0, 30.0);
+  CHECK(off.occupied_h.mean == Approx(100.0));
+  CHECK(off.occupied_h.most == Approx(180.0));
+  CHECK(off.arrival_min.most == 0.5);  // a reading
 }
 
 TEST_CASE("Counts say how far off they are, and for how long they are sure") {

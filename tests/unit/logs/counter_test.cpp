@@ -73,15 +73,15 @@ double seen(const Counter& counter, const RoomModel& room, const Stretch& stretc
   return like_it * sum;
 }
 
-/// (readings x counts) and the likelihood, by summing over every path of states.
+/// (readings x counts), how often the count changes, and the likelihood, by summing over every path of states.
 struct AllPaths {
   std::vector<double> counts;
-  double likelihood = 0.0;
+  double changes = 0.0, likelihood = 0.0;
 };
 AllPaths over_all_paths(const Counter& counter, const RoomModel& room, const Stretch& stretch) {
   const std::size_t n = stretch.n_readings();
   constexpr std::size_t states = 4;
-  AllPaths sums{std::vector<double>(n * 2, 0.0), 0.0};
+  AllPaths sums{std::vector<double>(n * 2, 0.0)};
   std::vector<std::size_t> path(n, 0);
   while (true) {
     double p = room.first[path[0]];
@@ -91,11 +91,13 @@ AllPaths over_all_paths(const Counter& counter, const RoomModel& room, const Str
     }
     sums.likelihood += p;
     for (std::size_t i = 0; i < n; ++i) sums.counts[i * 2 + path[i] / 2] += p;
+    for (std::size_t i = 1; i < n; ++i) sums.changes += path[i] / 2 != path[i - 1] / 2 ? p : 0.0;
     std::size_t i = 0;
     while (i < n && ++path[i] == states) path[i++] = 0;
     if (i == n) break;
   }
   for (double& value : sums.counts) value /= sums.likelihood;
+  sums.changes /= sums.likelihood;
   return sums;
 }
 
@@ -148,6 +150,52 @@ TEST_CASE("A counter's two passes give what a sum over every path of states give
       if (!forward.is_told(n - 1)) continue;  // nothing has been known yet
       CHECK(forward.probabilities[2 * n - 1] == Approx(over_all_paths(counter, counter.rooms[0], part).counts.back()));
     }
+  }
+}
+
+TEST_CASE("Courses of people are drawn as often as a sum over every path of states says, changes of the count too") {
+  std::mt19937 random(11);
+  Counter counter = random_counter(random, 2);
+  counter.rooms[0].weight = 0.25, counter.rooms[1].weight = 0.75;
+  for (RoomModel& room : counter.rooms) {  // counts that last: readings by themselves would change more often
+    for (std::size_t i = 0; i < room.moves.size(); ++i) room.moves[i] *= i / 4 / 2 == i % 4 / 2 ? 9.0 : 1.0;
+    divide_rows(room.moves, 4);
+  }
+  const Stretch stretch = random_stretch(random, 6, 2);
+  const AllPaths a = over_all_paths(counter, counter.rooms[0], stretch);
+  const AllPaths b = over_all_paths(counter, counter.rooms[1], stretch);
+  constexpr int n = 4000;
+  std::vector<double> somebody(6, 0.0);
+  double changes = 0.0, changes_by_themselves = 0.0;
+  for (const std::vector<int>& course : draw_people(counter, stretch, n)) {
+    for (std::size_t i = 0; i < 6; ++i) somebody[i] += course[i];
+    for (std::size_t i = 1; i < 6; ++i) changes += course[i] != course[i - 1] ? 1.0 : 0.0;
+  }
+  const auto mixed = [&](auto value_of) { return 0.25 * value_of(a) + 0.75 * value_of(b); };
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double p = mixed([&](const AllPaths& all) { return all.counts[i * 2 + 1]; });
+    CHECK(std::abs(somebody[i] / n - p) < 4.0 * std::sqrt(p * (1.0 - p) / n));
+    const double before = i == 0 ? p : mixed([&](const AllPaths& all) { return all.counts[i * 2 - 1]; });
+    changes_by_themselves += i == 0 ? 0.0 : p * (1.0 - before) + before * (1.0 - p);
+  }
+  const double expected = mixed([](const AllPaths& all) { return all.changes; });
+  const double error = std::sqrt(5.0 / n);  // of at most five changes a course
+  CHECK(std::abs(changes / n - expected) < 4.0 * error);
+  CHECK(std::abs(changes_by_themselves - expected) > 8.0 * error);
+}
+
+TEST_CASE("Courses of people hold to counts that are known, and tell none where nothing is") {
+  std::mt19937 random(12);
+  const Counter counter = random_counter(random, 1);
+  Stretch stretch = random_stretch(random, 60, 2);
+  stretch.people.assign(60, unknown_count);
+  stretch.people[3] = 0, stretch.people[4] = 1;
+  std::fill(stretch.motion.begin() + 2 * 10, stretch.motion.begin() + 2 * 50, unknown_bit);  // longer than told
+  for (const std::vector<int>& course : draw_people(counter, stretch, 20)) {
+    CHECK(course[3] == 0);
+    CHECK(course[4] == 1);
+    CHECK(course[9] != unknown_count);
+    CHECK(course[30] == unknown_count);
   }
 }
 
@@ -517,6 +565,25 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   spoilt = counter;
   spoilt.holds_s = {-1.0, 2.0};
   refused(spoilt);
+}
+
+TEST_CASE("How far off figures are is written and read back, and a counter without tells none") {
+  std::mt19937 random(15);
+  Counter counter = random_counter(random, 1);
+  const TemporaryFolder folder;
+  write_counter(folder.path() / "counter.json", counter);
+  CHECK_FALSE(read_counter(folder.path() / "counter.json").figures_off);
+  counter.figures_off.emplace();
+  double value = 0.0;
+  for (const auto& [name, off] : figure_names) {
+    (*counter.figures_off).*off = {value + 1.0, value + 2.0};
+    value += 2.0;
+  }
+  write_counter(folder.path() / "counter.json", counter);
+  const std::optional<FiguresOff> read = read_counter(folder.path() / "counter.json").figures_off;
+  REQUIRE(read);
+  CHECK(read->occupied_h.mean == 1.0);
+  CHECK(read->hour_most.most == 2.0 * std::size(figure_names));
 }
 
 TEST_CASE("Rooms that a counter can't learn from are refused") {

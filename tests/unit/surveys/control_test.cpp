@@ -197,6 +197,49 @@ TEST_CASE("A light that never went off on somebody may do so: its rate is bounde
   CHECK(costs_of(3, false).false_offs_an_hour.over_days->low > 0.0);
 }
 
+TEST_CASE("A light by a counter goes off once it is as sure that nobody is there, and motion brings it back") {
+  const std::string bits = "0100000010", people = "0111100001";
+  const std::vector<double> nobody{0.99, 0.0, 0.4, 0.6, 0.75, 0.85, 0.92, 0.99, 0.1, 0.2};
+  Control control(rule_with({}, {3.0}), {{"PIR"}, {}, {}}, minute_s, People::expected);
+  for (std::size_t i = 0; i < bits.size(); ++i)
+    control.add(row_of(static_cast<int>(i), static_cast<std::uint8_t>(bits[i] - '0'), people[i] - '0'), {}, nobody[i]);
+  const LightCosts costs = control.finish().lights.front();
+  const auto at = [&](double level) { return *std::ranges::find(costs.by_nobody, level, &DelayCosts::nobody); };
+  CHECK(at(0.5).lit_h * 60.0 == Approx(2 + 2));
+  CHECK(at(0.5).false_offs == 1.0);
+  CHECK(at(0.7).lit_h * 60.0 == Approx(3 + 2));
+  CHECK(at(0.9).lit_h * 60.0 == Approx(5 + 2));
+  CHECK(at(0.9).false_offs == 0.0);
+  CHECK(at(0.9).lit_empty_h * 60.0 == Approx(1 + 1));
+  CHECK(at(0.9).empty_share.value == Approx(0.2));
+  CHECK(at(0.99).lit_h * 60.0 == Approx(6 + 2));
+  CHECK(costs.at(3.0).lit_h * 60.0 == Approx(4 + 2));
+  Control known(rule_with({}, {3.0}), {{"PIR"}, {}, {}}, minute_s);
+  known.add(row_of(0, 1, 1));
+  CHECK(known.finish().lights.front().by_nobody.empty());
+  LightSpec of_area;
+  of_area.area = "a";
+  CHECK_THROWS_AS(Control(rule_with(of_area, {3.0}), {{"PIR"}, {"a"}, {}}, minute_s, People::expected), Error);
+}
+
+TEST_CASE("Costs to expect are means over the draws, with the middle of them") {
+  std::vector<Costs> draws;
+  for (int draw = 0; draw < 21; ++draw) {  // sits for so many minutes after the motion, then nobody
+    Control control(rule_with({}, {2.0}), {{"PIR"}, {}, {}}, minute_s, People::expected);
+    for (int i = 0; i < 40; ++i) control.add(row_of(i, i == 0 ? 1 : 0, i < draw ? 1 : 0));
+    draws.push_back(control.finish());
+  }
+  const LightCosts costs = expected_of(draws).lights.front();
+  CHECK(costs.people == People::expected);
+  CHECK(costs.occupied_h * 60.0 == Approx(10.0));
+  CHECK(costs.at(2.0).false_offs == Approx(17.0 / 21.0));           // 3 lit minutes: of 0 to 3 it goes off on nobody
+  CHECK(costs.at(2.0).dark_h * 60.0 == Approx(17.0 * 9.0 / 21.0));  // 1 to 17
+  CHECK(costs.at(2.0).lit_empty_h * 60.0 == Approx((3.0 + 2.0 + 1.0) / 21.0));
+  REQUIRE(costs.at(2.0).dark_share.over_days);
+  CHECK(costs.at(2.0).dark_share.over_days->low == 0.0);
+  CHECK(costs.at(2.0).dark_share.over_days->high == Approx(16.0 / 19.0));  // the 19th of those with somebody
+}
+
 TEST_CASE("A light goes on through gaps of the rows: it is lit where a motion is at most the delay ago") {
   constexpr int n = 5000, delay = 5;
   std::mt19937 random(3);

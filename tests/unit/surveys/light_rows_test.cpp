@@ -136,7 +136,7 @@ TEST_CASE("light by columns of bits is what `control` makes of the same rows", "
   REQUIRE(score.areas.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
     const control::DelayCosts& at = costs.lights[i].at(2.0);
-    CHECK(score.areas[i].false_offs == at.false_offs);
+    CHECK(static_cast<double>(score.areas[i].false_offs) == at.false_offs);
     CHECK(score.areas[i].false_offs > 0);
     CHECK(score.areas[i].false_offs_an_hour() == Approx(at.false_offs_an_hour.value));
     CHECK(score.areas[i].dark_h == Approx(at.dark_h));
