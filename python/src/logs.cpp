@@ -221,7 +221,7 @@ nb::object told_off(const std::optional<counting::FiguresOff>& off) {
   return told;
 }
 
-/// Columns of `pirsim count --days` and `--hours`. off: as told_off() gives it.
+/// Columns of `pirsim count --by-day` and `--by-hour`. off: as told_off() gives it.
 nb::tuple figures(const LogRows& readings, const Array<double, 2>& probabilities, const nb::object& off) {
   calibrate::LogCounts counts{readings, estimates_of(probabilities), {}, {}};
   if (!off.is_none()) {

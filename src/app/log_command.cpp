@@ -210,9 +210,9 @@ void add_count_command(CLI::App& app) {
   offer_input_file(command, "COUNTER", options->counter, "counter.json of pirsim calibrate")->required();
   offer_log(command, options->log);
   offer_output(command, output_names, options->output, "counts as CSV (default: standard output)");
-  offer_output(command, "--days", options->days, "a row a day: hours with somebody, arrival, departure, .csv",
+  offer_output(command, "--by-day", options->days, "a row a day: hours with somebody, arrival, departure, .csv",
                {".csv"});
-  offer_output(command, "--hours", options->hours, "a row an hour of the day: P(nobody), people, .csv", {".csv"});
+  offer_output(command, "--by-hour", options->hours, "a row an hour of the day: P(nobody), people, .csv", {".csv"});
   offer_output(command, "--report", options->report, "a page with all of it, and the counts as time lines");
   command.add_flag_callback(
       "--forward", [options] { options->pass = counting::Pass::forward; },

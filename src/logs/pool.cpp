@@ -287,17 +287,20 @@ counting::Stretch whole_log(const LogRows& rows) {
 LogDays days_of(const LogRows& rows, const Interval& hours) {
   constexpr double least_share = 0.9;  // assumed: half a day has other statistics than a day
   const bool has_clock = rows.clock != LogClock::elapsed;
-  const auto is_within = [&](const LogMoment& moment) {
+  // Of a day that ends after midnight, as those at home do, the small hours are the day before's. No text: it is of none.
+  const auto date_of = [&](LogMoment moment) -> std::string {
     constexpr std::int64_t day_us = 86'400'000'000;
-    constexpr double hour_us = 3600e6;
+    constexpr double hour_us = 3600e6, hours_a_day = 24.0;
+    if (!has_clock) return "the one day of the log";
     const std::int64_t local_us = moment.local_us(), into_us = (local_us % day_us + day_us) % day_us;
-    const double hour = static_cast<double>(into_us) / hour_us;
-    return !has_clock || (hour >= hours.low && hour < hours.high);
+    double hour = static_cast<double>(into_us) / hour_us;
+    if (hour < hours.low) hour += hours_a_day, moment.us -= day_us;
+    return hour < hours.high ? to_text(moment, rows.clock).substr(0, 10) : "";
   };
   std::vector<std::pair<std::string, counting::Stretch>> each;
   for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    if (!is_within(rows.begin[i])) continue;
-    const std::string date = has_clock ? to_text(rows.begin[i], rows.clock).substr(0, 10) : "the one day of the log";
+    const std::string date = date_of(rows.begin[i]);
+    if (date.empty()) continue;
     if (each.empty() || each.back().first != date) each.push_back({date, {static_cast<int>(rows.sensors.size()), {}}});
     append(rows, i, each.back().second);
   }

@@ -340,7 +340,7 @@ def test_a_log_is_counted_as_on_the_command_line(forward, load, command, tmp_pat
     printed = command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward)
     tables = {name: tmp_path / f"{name}.csv" for name in ("days", "hours")}
     command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward,
-            *(word for name, file in tables.items() for word in (f"--{name}", file)))
+            "--by-day", tables["days"], "--by-hour", tables["hours"])
     estimates = counter.estimate(tmp_path / "log.csv", smoothed=not forward)
     estimates.write_csv(tmp_path / "counts.csv")
     assert (tmp_path / "counts.csv").read_bytes().decode() == printed and printed.count("\n") == 241

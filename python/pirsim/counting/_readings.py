@@ -203,13 +203,13 @@ class Estimates:
 
     @property
     def days(self) -> dict[str, npt.NDArray[Any]]:
-        """[day] the columns of `pirsim count --days`: hours with somebody, arrival, departure, most people, and how far
+        """[day] the columns of `pirsim count --by-day`: hours with somebody, arrival, departure, most people, and how far
         off each is; texts, or numbers that are NaN where nothing is known. pandas.DataFrame() takes them."""
         return self._figures[0]
 
     @property
     def hours(self) -> dict[str, npt.NDArray[Any]]:
-        """[hour of the day] the columns of `pirsim count --hours`: P(nobody), people, the most of them."""
+        """[hour of the day] the columns of `pirsim count --by-hour`: P(nobody), people, the most of them."""
         return self._figures[1]
 
     @cached_property

@@ -318,6 +318,11 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   CHECK(nights.each.size() == 2);  // but they weigh
   CHECK(nights.partial == std::vector<std::string>{"1970-01-02", "1970-01-03"});
   CHECK(days.partial.empty());
+  const LogDays at_home = days_of(rows, {4.0, 28.0});  // the small hours are the day before's
+  CHECK(at_home.partial == std::vector<std::string>{"1970-01-01", "1970-01-03"});
+  REQUIRE(at_home.whole.size() == 1);
+  CHECK(at_home.whole[0].motion == std::vector<std::uint8_t>{0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0,
+                                                             0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, {"2026-03-02"}}), contains("no verdict"));
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, {}}) == "2 days, from 7:00 to 10:00");
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, {"2026-03-02"}}) ==
