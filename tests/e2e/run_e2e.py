@@ -41,7 +41,7 @@ FLAT_VALUES = {"--rooms": "2", "--residents": "1", "--size": "60", "--layout": "
                "--mount": "ceiling", "--model": "EKMC1601111"}
 ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5", **FLAT_VALUES}
-VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--by-day": "days.csv", "--by-hour": "hours.csv", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
