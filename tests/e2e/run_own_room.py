@@ -230,6 +230,16 @@ class OwnRoom(unittest.TestCase):
         people = [row["people_light"] for row in table(out[3])]
         counts = [row["people"] for row in csv.DictReader(run("count", counter[1], "--log", *self.log, "-q")[0].splitlines())]
         self.assertEqual(people, counts)
+        forward = csv.DictReader(run("count", counter[1], "--log", *self.log, "--forward", "-q")[0].splitlines())
+        nobody = [float(row["p0"] or 1.0) for row in forward]
+        run("log", *self.log, "--step", 30, "-o", self.folder / "log_rows.csv", "-q")
+        bits = [list(row.values())[2:] for row in table(self.folder / "log_rows.csv")]
+        for row in told[len(delays):]:
+            lit, rows = False, 0
+            for reading, p in zip(bits, nobody, strict=True):
+                lit = "1" in reading or (lit and p < float(row["nobody"]))
+                rows += lit and "" not in reading
+            self.assertAlmostEqual(float(row["lit_h"]), rows / 120, delta=1 / 60, msg=row["nobody"])  # p0 is rounded
         for wrong, why in ((("--log", *self.log, *counter, "--step", 1), "--step"),
                            ((out[0], *counter), "it counts the people of a --log")):
             self.assertIn(why, run("control", *wrong, code=2)[1])
