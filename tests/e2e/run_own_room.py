@@ -230,11 +230,19 @@ class OwnRoom(unittest.TestCase):
         people = [row["people_light"] for row in table(out[3])]
         counts = [row["people"] for row in csv.DictReader(run("count", counter[1], "--log", *self.log, "-q")[0].splitlines())]
         self.assertEqual(people, counts)
-        forward = csv.DictReader(run("count", counter[1], "--log", *self.log, "--forward", "-q")[0].splitlines())
+        head, *rows = self.log[0].read_text().splitlines()
+        date, time, *bits = rows[-1].split(",")
+        last = datetime.datetime.fromisoformat(f"{date} {time}".replace("/", "-"))
+        quiet = [f"{last + datetime.timedelta(seconds=30 * i):%Y/%m/%d,%H:%M:%S}" + ",0" * len(bits) for i in range(1, 241)]
+        log = self.write("left.csv", "\n".join([head, *rows, *quiet]) + "\n")  # everybody goes home
+        run("control", "--log", log, *counter, "-o", out[2], "-q")
+        told = list(table(out[2]))[len(delays):]
+        self.assertLess(float(told[0]["lit_h"]), float(told[-1]["lit_h"]) - 0.1)
+        forward = csv.DictReader(run("count", counter[1], "--log", log, "--forward", "-q")[0].splitlines())
         nobody = [float(row["p0"] or 1.0) for row in forward]
-        run("log", *self.log, "--step", 30, "-o", self.folder / "log_rows.csv", "-q")
+        run("log", log, "--step", 30, "-o", self.folder / "log_rows.csv", "-q")
         bits = [list(row.values())[2:] for row in table(self.folder / "log_rows.csv")]
-        for row in told[len(delays):]:
+        for row in told:
             lit, rows = False, 0
             for reading, p in zip(bits, nobody, strict=True):
                 lit = "1" in reading or (lit and p < float(row["nobody"]))
