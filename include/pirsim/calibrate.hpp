@@ -28,13 +28,19 @@ struct PoolRoom {
 /// A number that a day's motion tells without counts, and how the log compares with the rooms.
 struct Statistic {
   std::string name, unit;
+  /// Those of the schedule don't make the verdict: it is the recipe's hours that are to be moved, not the room.
+  enum class About { motion, schedule } about = About::motion;
   double of_log = 0.0;
-  Interval of_rooms;    ///< 5 to 95 % of all rooms
-  Interval of_weighty;  ///< the same by weight
-  double p = 1.0;       ///< share of rooms, and the log, that are at least as far from the middle
-  /// What a range would have to be like for the statistic to reach the log's, if one of the recipe's moves it: "more
-  /// range_scale.scale". Empty: inside, or nothing moves it.
-  std::string advice;
+  Interval of_rooms{};    ///< 5 to 95 % of all rooms
+  Interval of_weighty{};  ///< the same by weight
+  double p = 1.0;         ///< share of rooms, and the log, that are at least as far from the middle
+  double share = 0.0;     ///< of what makes the log unlike the rooms, that goes without this one; 0 of the schedule's
+  /// Where it is unlike the rooms', by itself or most of all where they are so together: what that is a sign of, or
+  /// of the schedule's, what to do. Empty elsewhere.
+  std::string sign{};
+  /// What a range would have to be like for the statistic to reach the log's, if it is unlike and one of the recipe's
+  /// moves it: "more range_scale.scale".
+  std::string advice{};
 };
 
 /// What the log determined of a parameter.
@@ -59,7 +65,8 @@ enum class Verdict {
   none_like_it,    ///< no room of this recipe makes such a log: neither counts nor errors can be relied on
   too_little_told  ///< too little happens in the log to tell
 };
-[[nodiscard]] std::string word_of(Verdict verdict);  ///< "like-these"
+[[nodiscard]] std::string word_of(Verdict verdict);         ///< "like-these"
+[[nodiscard]] std::string word_of(Statistic::About about);  ///< "motion"
 
 struct Calibration {
   counting::Counter counter;  ///< of all rooms, weighed, with the error to expect

@@ -268,7 +268,7 @@ nb::dict told(calibrate::Calibration&& made) {
   });
   result["statistics"] = listed(made.statistics, [](const calibrate::Statistic& one) {
     return nb::make_tuple(one.name, one.unit, one.of_log, pair_of(one.of_rooms), pair_of(one.of_weighty), one.p,
-                          one.advice);
+                          calibrate::word_of(one.about), one.share, one.sign, one.advice);
   });
   result["parameters"] = listed(made.parameters, [](const calibrate::ParameterRange& one) {
     return nb::make_tuple(one.name, pair_of(one.before), pair_of(one.after), one.mean_before, one.mean_after,

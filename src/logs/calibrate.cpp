@@ -173,6 +173,14 @@ double distance_from_others(const Eigen::MatrixXd& rows, Eigen::Index i) {
   return away.dot(stats::detail::solve_symmetric(covariance, away));
 }
 
+/// Share of the rows that are at least as far from the others as the last is.
+double share_as_far(const Eigen::MatrixXd& all) {
+  const double own = distance_from_others(all, all.rows() - 1);
+  int as_far = 1;
+  for (Eigen::Index i = 0; i + 1 < all.rows(); ++i) as_far += distance_from_others(all, i) >= own ? 1 : 0;
+  return static_cast<double>(as_far) / static_cast<double>(all.rows());
+}
+
 constexpr double window_min = 5.0, pause_min = 10.0, busy_share = 0.7;
 constexpr int least_readings_with_motion = 20;
 
@@ -223,6 +231,39 @@ double likeness(const Stretch& stretch, const Active& active) {
   }
   const double spread = a * (n - a) * b * (n - b);
   return spread > 0.0 ? (n * both - a * b) / std::sqrt(spread) : 0.0;
+}
+
+/// The most that a sensor is silent for at a time while another reports, as a share of the readings with motion.
+double longest_silence(const Stretch& stretch, const Active& active) {
+  std::size_t longest = 0;
+  for (int k = 0; k < stretch.n_sensors; ++k) {
+    std::size_t silent = 0;
+    for (std::size_t i = active.begin; i < active.end; ++i) {
+      if (active.any[i - active.begin] == 0 || bit(stretch, i, k) == counting::unknown_bit) continue;
+      silent = bit(stretch, i, k) == 1 ? 0 : silent + 1;
+      longest = std::max(longest, silent);
+    }
+  }
+  return static_cast<double>(longest) / static_cast<double>(active.with_motion);
+}
+
+/// Of the readings with motion of the sensor that has most such: the share before and after which none reports.
+double lone_motion(const Stretch& stretch, const Active& active) {
+  constexpr std::size_t fewest = 6;  // readings with motion of a sensor, of fewer a share says nothing
+  const auto any = [&](std::size_t i) {
+    return i >= active.begin && i < active.end && active.any[i - active.begin] != 0;
+  };
+  double most = 0.0;
+  for (int k = 0; k < stretch.n_sensors; ++k) {
+    std::size_t motion = 0, lone = 0;
+    for (std::size_t i = active.begin; i < active.end; ++i) {
+      if (bit(stretch, i, k) != 1) continue;
+      ++motion;
+      lone += any(i + 1) || (i > 0 && any(i - 1)) ? 0 : 1;
+    }
+    if (motion >= fewest) most = std::max(most, static_cast<double>(lone) / static_cast<double>(motion));
+  }
+  return most;
 }
 
 /// Lengths of runs without and with motion, in readings.
@@ -279,10 +320,12 @@ std::vector<double> of_stretch(const Stretch& stretch, const Active& active, dou
                              busy,
                              hours,
                              static_cast<double>(pauses) / hours,
-                             static_cast<double>(active.begin) * step_s / hour_s};
+                             static_cast<double>(active.begin) * step_s / hour_s,
+                             lone_motion(stretch, active)};
   if (stretch.n_sensors > 1) {
     values.push_back(least);
     values.push_back(likeness(stretch, active));
+    values.push_back(longest_silence(stretch, active));
   }
   return values;
 }
@@ -400,31 +443,81 @@ std::string advice_for(std::span<const PoolRoom> pool, const RoomStatistics& kno
   return best;
 }
 
+/// Those of motion, which make the verdict; without: but for this one.
+std::vector<std::size_t> verdicts_columns(int n_sensors, std::optional<std::size_t> without = {}) {
+  const std::vector<StatisticInfo> infos = statistics_of(n_sensors);
+  std::vector<std::size_t> columns;
+  for (std::size_t s = 0; s < infos.size(); ++s) {
+    if (infos[s].about == Statistic::About::motion && s != without) columns.push_back(s);
+  }
+  return columns;
+}
+
+/// The rooms, and the log as the last row, of some statistics.
+Eigen::MatrixXd with_log(const RoomStatistics& known, const std::vector<double>& of_log,
+                         const std::vector<std::size_t>& columns) {
+  const auto n = static_cast<Eigen::Index>(known.rows.rows());
+  Eigen::MatrixXd all(n + 1, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const auto column = static_cast<Eigen::Index>(c);
+    for (Eigen::Index i = 0; i < n; ++i) all(i, column) = known.rows(static_cast<std::size_t>(i), columns[c]);
+    all(n, column) = of_log[columns[c]];
+  }
+  return all;
+}
+
+/// Says of what is unlike the rooms what that is a sign of. If they are so only together, of the two that weigh most.
+void tell_signs(const std::vector<StatisticInfo>& infos, Verdict verdict, std::vector<Statistic>& statistics) {
+  using About = Statistic::About;
+  const auto speaks = [](const Statistic& one) { return one.about == About::motion && one.p <= verdict_level; };
+  double least_share = 2.0;  // more than all
+  if (verdict == Verdict::none_like_it && std::ranges::none_of(statistics, speaks)) {
+    std::vector<double> shares;
+    for (const Statistic& one : statistics) shares.push_back(one.share);
+    std::ranges::sort(shares, std::greater{});
+    least_share = shares[1];
+  }
+  for (std::size_t s = 0; s < statistics.size(); ++s) {
+    Statistic& one = statistics[s];
+    const bool is_more = one.of_log > 0.5 * (one.of_rooms.low + one.of_rooms.high);
+    if (one.p <= verdict_level || (one.about == About::motion && one.share >= least_share))
+      one.sign = is_more ? infos[s].more : infos[s].less;
+  }
+}
+
 Interval told(const StatisticInfo& info, const Interval& values, double step_s) {
   return {told(info, values.low, step_s), told(info, values.high, step_s)};
 }
 
 std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatistics& known,
                                 const std::vector<double>& of_log, const std::vector<double>& weights,
-                                const counting::Counter& counter) {
+                                const counting::Counter& counter, Verdict verdict) {
   const double step_s = counter.settings.step_s;
   std::vector<double> own_weights;
   for (const std::size_t r : known.rooms) own_weights.push_back(weights[r]);
   const std::vector<double> alike(known.rooms.size(), 1.0);
   const std::vector<StatisticInfo> infos = statistics_of(counter.n_sensors);
+  const auto distance = [&](std::optional<std::size_t> without) {
+    const Eigen::MatrixXd rows = with_log(known, of_log, verdicts_columns(counter.n_sensors, without));
+    return distance_from_others(rows, rows.rows() - 1);
+  };
+  const double whole = distance({});
   std::vector<Statistic> all;
   for (std::size_t s = 0; s < infos.size(); ++s) {
     std::vector<double> values;
     for (std::size_t i = 0; i < known.rooms.size(); ++i) values.push_back(known.rows(i, s));
     const StatisticInfo& info = infos[s];
-    Statistic& one = all.emplace_back(Statistic{info.name,
-                                                info.unit,
-                                                told(info, of_log[s], step_s),
-                                                told(info, weighted_interval(values, alike), step_s),
-                                                told(info, weighted_interval(values, own_weights), step_s),
-                                                unlike_share(values, of_log[s]),
-                                                {}});
-    if (one.p <= verdict_level) one.advice = advice_for(pool, known, s, of_log[s] - weighted_mean(values, alike));
+    Statistic& one = all.emplace_back(Statistic{.name = info.name, .unit = info.unit, .about = info.about});
+    one.of_log = told(info, of_log[s], step_s);
+    one.of_rooms = told(info, weighted_interval(values, alike), step_s);
+    one.of_weighty = told(info, weighted_interval(values, own_weights), step_s);
+    one.p = unlike_share(values, of_log[s]);
+    if (info.about == Statistic::About::motion && whole > 0.0) one.share = std::max(0.0, 1.0 - distance(s) / whole);
+  }
+  tell_signs(infos, verdict, all);
+  for (std::size_t s = 0; s < infos.size(); ++s) {
+    if (all[s].sign.empty() || all[s].about == Statistic::About::schedule) continue;
+    all[s].advice = advice_for(pool, known, s, all[s].of_log - 0.5 * (all[s].of_rooms.low + all[s].of_rooms.high));
   }
   return all;
 }
@@ -512,10 +605,7 @@ double unlike_share(const stats::Matrix<double>& rows, std::span<const double> v
   Eigen::MatrixXd all(static_cast<Eigen::Index>(rows.rows() + 1), static_cast<Eigen::Index>(rows.columns()));
   all.topRows(all.rows() - 1) = stats::detail::as_eigen(rows);
   all.bottomRows(1) = stats::detail::as_eigen(vector).transpose();
-  const double own = distance_from_others(all, all.rows() - 1);
-  int as_far = 1;
-  for (Eigen::Index i = 0; i + 1 < all.rows(); ++i) as_far += distance_from_others(all, i) >= own ? 1 : 0;
-  return static_cast<double>(as_far) / static_cast<double>(all.rows());
+  return share_as_far(all);
 }
 
 double unlike_share(std::span<const double> values, double value) {
@@ -531,19 +621,34 @@ double told(const StatisticInfo& info, double value, double step_s) {
 }
 
 std::vector<StatisticInfo> statistics_of(int n_sensors) {
-  using Scale = StatisticInfo::Scale;
-  std::vector<StatisticInfo> all{{"readings with motion, busiest sensor", "share"},
-                                 {"readings with motion, any sensor", "share"},
-                                 {"mean run with motion", "min", Scale::logarithm},
-                                 {"mean run without", "min", Scale::logarithm},
-                                 {"5 min without motion", "share"},
-                                 {"5 min with motion in more than 70 %", "share"},
-                                 {"from first to last motion", "h"},
-                                 {"pauses longer than 10 min", "1/h"},
-                                 {"first motion after the hours begin", "h"}};
+  using enum StatisticInfo::Scale;
+  using enum Statistic::About;
+  const std::string busy = "a fan, a pet, or livelier people",
+                    quiet = "fewer or quieter people, or sensors that notice less",
+                    lost = "a sensor that died, is covered or looks elsewhere",
+                    alike = "sensors that look at the same place, or what all of them see";
+  std::vector<StatisticInfo> all{
+      {"readings with motion, busiest sensor", "share", plain, motion, busy, quiet},
+      {"readings with motion, any sensor", "share", plain, motion, busy, quiet},
+      {"mean run with motion", "min", logarithm, motion, "livelier people, or sensors that hold motion for longer",
+       "sensors that hold motion for a shorter time, or notice less"},
+      {"mean run without", "min", logarithm, motion, quiet, busy},
+      {"5 min without motion", "share", plain, motion, quiet, busy},
+      {"5 min with motion in more than 70 %", "share", plain, motion, busy, quiet},
+      {"from first to last motion", "h", plain, schedule,
+       "let the schedule's `arrival` be earlier, or `departure` later",
+       "let the schedule's `arrival` be later, or `departure` earlier"},
+      {"pauses longer than 10 min", "1/h", plain, motion, "people who leave more often or sit where nothing sees them",
+       busy},
+      {"first motion after the hours begin", "h", plain, schedule,
+       "let the schedule's `arrival` be later, and `from` with it",
+       "let the schedule's `arrival` be earlier, and `from` with it"},
+      {"motion in one reading alone, most of a sensor", "share", plain, motion, "a fan, or false motion",
+       "livelier people, or sensors that hold motion for longer"}};
   if (n_sensors > 1) {
-    all.push_back({"readings with motion, quietest sensor", "share"});
-    all.push_back({"likeness of first and last sensor", "phi"});
+    all.push_back({"readings with motion, quietest sensor", "share", plain, motion, busy, lost});
+    all.push_back({"likeness of first and last sensor", "phi", plain, motion, alike, lost + ", or sees a fan"});
+    all.push_back({"longest silence of a sensor while another reports", "share", plain, motion, lost, alike});
   }
   return all;
 }
@@ -608,10 +713,10 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   const RoomStatistics known = room_statistics(room_days, log_days.size());
   if (known.rooms.size() < fewest_rooms) return made;
   const std::vector<double> of_log = mean_of_first(log_days, log_days.size());
-  made.p = unlike_share(known.rows, of_log);
+  made.p = share_as_far(with_log(known, of_log, verdicts_columns(counter.n_sensors)));
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
   made.counter.warning = warning_of(made.verdict);
-  made.statistics = compared(rooms, known, of_log, weights, made.counter);
+  made.statistics = compared(rooms, known, of_log, weights, made.counter, made.verdict);
   return made;
 }
 

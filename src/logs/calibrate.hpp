@@ -73,6 +73,8 @@ struct StatisticInfo {
     plain,
     logarithm  ///< of a length in readings: told in minutes
   } scale = Scale::plain;
+  Statistic::About about = Statistic::About::motion;
+  std::string more{}, less{};  ///< of what it is a sign, as Statistic::sign
 };
 /// A statistic in its unit.
 [[nodiscard]] double told(const StatisticInfo& info, double value, double step_s);

@@ -38,6 +38,29 @@ double place_in(const Interval& interval, double value) {
   return (value - middle) / std::max(half, least);
 }
 
+/// "mean run without (min): 1.2, rooms 2.1 to 4; a sign of a fan, a pet, or livelier people"
+std::string what_is_unlike(const Statistic& one) {
+  const std::string values =
+      one.name + " (" + one.unit + "): " + plain(one.of_log) + ", rooms " + plain(one.of_rooms) + "; ";
+  if (one.about == Statistic::About::schedule) return values + one.sign;
+  return values + (one.advice.empty() ? "" : one.advice + " brings the rooms nearer, or it is ") + "a sign of " +
+         one.sign;
+}
+
+/// Of the statistics that are unlike: those that weigh most.
+std::string what_is_unlike(const Calibration& calibration, Statistic::About about) {
+  std::vector<Statistic> unlike;
+  for (const Statistic& one : calibration.statistics) {
+    if (!one.sign.empty() && one.about == about) unlike.push_back(one);
+  }
+  std::ranges::stable_sort(unlike, std::greater{}, &Statistic::share);
+  constexpr std::size_t most = 3;
+  std::string told;
+  for (std::size_t i = 0; i < std::min(most, unlike.size()); ++i)
+    told += (i == 0 ? "" : ". ") + what_is_unlike(unlike[i]);
+  return told;
+}
+
 io::BandChart statistics_chart(const Calibration& calibration) {
   io::BandChart chart;
   chart.title = "What the log tells by itself, beside the recipe's rooms";
@@ -62,21 +85,19 @@ io::ReportSection statistics_section(const Calibration& calibration) {
       calibration.verdict == Verdict::none_like_it
           ? "No: only " + percent(calibration.p) +
                 " of the rooms differ as much from the others as your log does. Widen the range of what is outside, "
-                "or ask what is in the room that the recipe hasn't got: a pet, a fan, another kind of sensor, a sensor "
-                "that died."
+                "or ask what is in the room that the recipe hasn't got."
           : "Nothing speaks against it: " + percent(calibration.p) +
                 " of the rooms differ as much from the others as your log does. That doesn't prove that the room is "
                 "among them."};
-  io::Table table{{"of a day", "your log", "90 % of rooms", "by weight", "as far out"}, {}};
+  io::Table table{{"of a day", "your log", "90 % of rooms", "by weight", "as far out", "share"}, {}};
   for (const Statistic& one : calibration.statistics) {
-    table.rows.push_back(
-        {one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms), plain(one.of_weighty), percent(one.p)});
-    if (!one.advice.empty())
-      section.paragraphs.push_back("In these rooms, " + one.advice + " brings \"" + one.name +
-                                   "\" nearer to your log.");
+    table.rows.push_back({one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms), plain(one.of_weighty),
+                          percent(one.p), one.about == Statistic::About::schedule ? "" : percent(one.share)});
+    if (!one.sign.empty()) section.paragraphs.push_back("Unlike: " + what_is_unlike(one) + '.');
   }
   section.paragraphs.emplace_back(
-      "As far out: the share of rooms that are at least as far from the middle as your log.");
+      "As far out: the share of rooms that are at least as far from the middle as your log. Share: of what makes your "
+      "log unlike the rooms, that goes without this number; those of the schedule have no part in it.");
   section.tables.push_back(std::move(table));
   section.charts.push_back(statistics_chart(calibration));
   return section;
@@ -168,6 +189,9 @@ std::string numbers(const Calibration& calibration, const About& about) {
                           {"rooms", pair(one.of_rooms)},
                           {"weighted", pair(one.of_weighty)},
                           {"p", one.p},
+                          {"about", word_of(one.about)},
+                          {"share", one.share},
+                          {"sign", one.sign},
                           {"advice", one.advice}});
   }
   for (const ParameterRange& one : calibration.parameters) {
@@ -386,6 +410,8 @@ std::string word_of(Verdict verdict) {
   return "too-little-told";
 }
 
+std::string word_of(Statistic::About about) { return about == Statistic::About::schedule ? "schedule" : "motion"; }
+
 std::string warning_of(Verdict verdict) {
   return verdict == Verdict::none_like_it
              ? "Hardly a room that this counter comes from makes such a log: don't rely on its counts."
@@ -409,18 +435,15 @@ std::string finding(const Calibration& calibration) {
   const std::string error = expected ? " If it is one, expect an error of " + fixed(calibration.mean_error, 2) +
                                            " people (" + range(*expected) + ")."
                                      : "";
+  const std::string hours = what_is_unlike(calibration, Statistic::About::schedule);
+  const std::string moved = hours.empty() ? "" : " Its hours differ: " + hours + '.';
   switch (calibration.verdict) {
     case Verdict::like_these:
-      return "Rooms of this recipe make such logs, so yours may be one of them." + error;
-    case Verdict::none_like_it: {
-      std::string outside;
-      for (const Statistic& one : calibration.statistics) {
-        if (one.p <= verdict_level) outside += (outside.empty() ? "" : "; ") + one.name;
-      }
-      return "Hardly a room of this recipe makes such a log" +
-             (outside.empty() ? " (by its numbers together)" : ": " + outside) +
-             ". Neither counts nor errors can be relied on.";
-    }
+      return "Rooms of this recipe make such logs, so yours may be one of them." + error + moved;
+    case Verdict::none_like_it:
+      return "Hardly a room of this recipe makes such a log, so that neither counts nor errors can be relied on. Most "
+             "unlike: " +
+             what_is_unlike(calibration, Statistic::About::motion) + '.' + moved;
     case Verdict::too_little_told:
       break;
   }

@@ -287,7 +287,8 @@ counting::Stretch whole_log(const LogRows& rows) {
 LogDays days_of(const LogRows& rows, const Interval& hours) {
   constexpr double least_share = 0.9;  // assumed: half a day has other statistics than a day
   const bool has_clock = rows.clock != LogClock::elapsed;
-  // Of a day that ends after midnight, as those at home do, the small hours are the day before's. No text: it is of none.
+  // Of a day that ends after midnight, as those at home do, the small hours are the day before's. No text: it is of
+  // none.
   const auto date_of = [&](LogMoment moment) -> std::string {
     constexpr std::int64_t day_us = 86'400'000'000;
     constexpr double hour_us = 3600e6, hours_a_day = 24.0;

@@ -153,10 +153,12 @@ def sorted_sensors(scene):
 
 
 def facets_of(path):
-    """Per facet: twenty directions (five for each of four zones) and the range."""
+    """Per facet: five directions for each of its zones, and the range."""
     text = path.read_text()
     numbers_in = lambda part: {key: float(value) for key, value in re.findall(r"(\w+): *([-\d.]+)", part)}
     lens = numbers_in("\n".join(re.findall(r"^\w+: *[-\d.]+ *$", text, re.M)))
+    if dome := re.search(r"^dome: *\{(.*)\}", text, re.M):
+        return [(directions, lens["range_m"]) for directions in dome_lenses(**numbers_in(dome.group(1)))]
     layout = re.search(r"^layout: *(\w+)", text, re.M).group(1)
     assert "missing: outer" not in text, f"{path}: only whole facets are known here"
     facets = []
@@ -167,6 +169,33 @@ def facets_of(path):
         directions = np.column_stack([points, np.full(len(points), -lens["plane_m"])])
         facets.append((directions, facet.get("range_m", lens.get("range_m"))))
     return facets
+
+
+def dome_lenses(lenses=29, wide_deg=110, tall_deg=None, focal_mm=12, strip_width_mm=1, strip_height_mm=2, gap_mm=1):
+    """[(10, 3)] Of each lens: where the corners and the middles of two strips look through its middle."""
+    x = gap_mm / 2 + strip_width_mm * np.array([0, 1, 1, 0, 0.5])
+    y = strip_height_mm / 2 * np.array([-1, -1, 1, 1, 0])
+    strips = np.column_stack([np.concatenate([x, -x]), np.concatenate([y, y]), np.zeros(10)])
+    outermost = np.array([outermost_lens(np.radians(wide_deg) / 2, x.max() / focal_mm),
+                          outermost_lens(np.radians(tall_deg or wide_deg) / 2, y.max() / focal_mm)])
+    n_rings = min(range(1, 20), key=lambda n: abs(1 + 3 * n * (n + 1) - lenses))
+    pairs_within = [int(lenses) // 2 * n * (n + 1) // (n_rings * (n_rings + 1)) for n in range(n_rings + 1)]
+    tilts = [np.zeros(2)] * (int(lenses) % 2)
+    for ring in range(1, n_rings + 1):
+        turns = np.linspace(0, 2 * np.pi, 2 * (pairs_within[ring] - pairs_within[ring - 1]), endpoint=False)
+        tilts += [outermost * ring / n_rings * [np.cos(turn), np.sin(turn)] for turn in turns]
+    middles = [np.append(np.sinc(np.linalg.norm(tilt) / np.pi) * tilt, -np.cos(np.linalg.norm(tilt))) for tilt in tilts]
+    return [focal_mm * middle - strips for middle in middles]
+
+
+def outermost_lens(edge, far):
+    """Angle off the axis of a lens through which the element's far edge, so many focal lengths off the axis, looks out
+    at this angle. By bisection."""
+    low, high = 0.0, edge
+    for _ in range(60):
+        angle = (low + high) / 2
+        low, high = (low, angle) if np.sin(angle) + far > np.cos(angle) * np.tan(edge) else (angle, high)
+    return low
 
 
 def quad(layout, lens, facet, distance):

@@ -192,8 +192,14 @@ class Statistic(NamedTuple):
     """The same by weight."""
     p: float
     """Share of rooms, and the log, that are at least as far from the middle."""
+    about: str
+    """motion, or schedule: the verdict doesn't rest on these."""
+    share: float
+    """Of what makes the log unlike the rooms, that goes without this one; 0 of the schedule's."""
+    sign: str
+    """Where it is unlike the rooms': what that is a sign of, or of the schedule's, what to do; empty elsewhere."""
     advice: str
-    """What the recipe would have to change for the log's value; empty if it is inside, or if nothing moves it."""
+    """What the recipe would have to change for the log's value; empty if it isn't unlike, or if nothing moves it."""
 
 
 class ParameterRange(NamedTuple):

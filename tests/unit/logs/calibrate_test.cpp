@@ -1,4 +1,5 @@
 // Rooms weighed by a log: statistics by hand, the check's level, what moves, hours of days, the recipe that is made.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -75,11 +76,21 @@ TEST_CASE("Statistics of motion are what one counts by hand") {
   CHECK(statistic(*found, "from first to last motion") == Approx(active * 30 / 3600));
   CHECK(statistic(*found, "first motion after the hours begin") == Approx(40 * 30 / 3600.0));
   CHECK(statistic(*found, "pauses longer than 10 min") == 0.0);
+  CHECK(statistic(*found, "motion in one reading alone, most of a sensor") == 0.0);
+  Stretch fan = day;  // the second sensor reports three times in the quiet beginning: 3 of 23 are alone
+  for (const std::size_t i : {5, 10, 20}) fan.motion[2 * i + 1] = 1;
+  CHECK(statistic(motion_statistics(std::vector{fan}, 30.0).front(), "motion in one reading alone, most of a sensor") ==
+        Approx(3 / 23.0));
   CHECK(statistic(*found, "5 min without motion") == 0.0);
   CHECK(told(statistics_of(2)[2], std::log(4.0), 30.0) == Approx(2.0));  // min
   // phi of (n = 76; a = 40, b = 20, both = 20)
   CHECK(statistic(*found, "likeness of first and last sensor") ==
         Approx((76.0 * 20 - 40.0 * 20) / std::sqrt(40.0 * 36 * 20 * 56)));
+  // The second one misses two readings of forty at a time; what is unknown of it is passed over.
+  CHECK(statistic(*found, "longest silence of a sensor while another reports") == Approx(2 / 40.0));
+  for (std::size_t i = 81; i < day.motion.size(); i += 2) day.motion[i] = i < 200 ? counting::unknown_bit : 0;
+  CHECK(statistic(motion_statistics(std::vector{day}, 30.0).front(),
+                  "longest silence of a sensor while another reports") == Approx(8 / 40.0));
   Stretch quiet{2, std::vector<std::uint8_t>(200, 0)};
   CHECK(motion_statistics(std::vector{quiet}, 30.0).empty());
 }
@@ -259,10 +270,18 @@ TEST_CASE("A log of one day is compared with one day of each room, not with the 
       }
       return sum;
     };
-    stats::Matrix<double> rows(pool.size(), n_statistics);
-    for (std::size_t r = 0; r < pool.size(); ++r) std::ranges::copy(mean(pool[r].labelled.days), rows.row(r).begin());
+    const auto of_motion = [&](const std::vector<double>& all) {
+      std::vector<double> some;
+      for (std::size_t s = 0; s < n_statistics; ++s) {
+        if (statistics_of(2)[s].about == Statistic::About::motion) some.push_back(all[s]);
+      }
+      return some;
+    };
+    stats::Matrix<double> rows(pool.size(), n_statistics - 2);  // hours aren't among them
+    for (std::size_t r = 0; r < pool.size(); ++r)
+      std::ranges::copy(of_motion(mean(pool[r].labelled.days)), rows.row(r).begin());
     const auto part = std::span(log).first(n_days);
-    CHECK(Pool(pool).calibrate(part, part).p == Approx(unlike_share(rows, mean(log))).epsilon(1e-12));
+    CHECK(Pool(pool).calibrate(part, part).p == Approx(unlike_share(rows, of_motion(mean(log)))).epsilon(1e-12));
   }
 }
 
@@ -290,10 +309,45 @@ TEST_CASE("A log that no room makes is told, with what is outside, and a log wit
   }
   const Calibration died = Pool(pool).calibrate(log, log);
   CHECK(died.verdict == Verdict::none_like_it);
-  CHECK_THAT(finding(died), contains("quietest sensor"));
+  CHECK_THAT(finding(died), contains("quietest sensor") && contains("a sensor that died"));
+  for (const Statistic& one : died.statistics) CHECK((one.sign.empty() || one.p <= verdict_level || one.share > 0.0));
   for (Stretch& day : log) std::ranges::fill(day.motion, std::uint8_t{0});
   CHECK(Pool(pool).calibrate(log, log).verdict == Verdict::too_little_told);
   CHECK_THROWS_AS(Pool({pool.begin(), pool.begin() + 9}), Error);
+}
+
+TEST_CASE("A day that begins hours late is told apart and makes no verdict") {
+  std::mt19937 random(4);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  std::vector<Stretch> late = log;
+  for (Stretch& day : late) day.motion.insert(day.motion.begin(), std::size_t{300} * 2, 0);
+  const Calibration before = Pool(pool).calibrate(log, log), after = Pool(pool).calibrate(log, late);
+  CHECK(before.verdict == Verdict::like_these);
+  CHECK(after.verdict == Verdict::like_these);
+  CHECK_THAT(finding(before), !contains("hours differ"));
+  CHECK_THAT(finding(after), contains("hours differ") && contains("`arrival` be later"));
+}
+
+TEST_CASE("Of a log that is unlike only by its numbers together, the two that weigh most are named") {
+  std::mt19937 random(4);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  for (Stretch& day : log) {  // the second sensor sees what the first saw a reading before
+    for (std::size_t i = day.motion.size(); i-- > 3;) {
+      if (i % 2 == 1) day.motion[i] = day.motion[i - 3];
+    }
+  }
+  const Calibration made = Pool(pool).calibrate(log, log);
+  CHECK(made.verdict == Verdict::none_like_it);
+  std::vector<double> named, others;
+  for (const Statistic& one : made.statistics) {
+    CHECK(one.p > verdict_level);
+    (one.sign.empty() ? others : named).push_back(one.share);
+  }
+  REQUIRE(named.size() == 2);
+  CHECK(std::ranges::min(named) >= std::ranges::max(others));
+  CHECK_THAT(finding(made), contains("Most unlike: ") && contains(", rooms "));
 }
 
 TEST_CASE("Of a log the hours that the recipe simulates are compared, each day of its own") {
@@ -321,8 +375,8 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   const LogDays at_home = days_of(rows, {4.0, 28.0});  // the small hours are the day before's
   CHECK(at_home.partial == std::vector<std::string>{"1970-01-01", "1970-01-03"});
   REQUIRE(at_home.whole.size() == 1);
-  CHECK(at_home.whole[0].motion == std::vector<std::uint8_t>{0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0,
-                                                             0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  CHECK(at_home.whole[0].motion ==
+        std::vector<std::uint8_t>{0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   CHECK_THAT(days_compared({"", "", "", {7.0, 10.0}, 0, {"2026-03-02"}}), contains("no verdict"));
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 2, {}}) == "2 days, from 7:00 to 10:00");
   CHECK(days_compared({"", "", "", {7.0, 10.0}, 1, {"2026-03-02"}}) ==
