@@ -1,0 +1,214 @@
+"""From the topics of motion sensors to people, P(nobody) and occupancy, by MQTT; Home Assistant discovers them."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from typing import Any, Callable, Iterable
+
+import paho.mqtt.client as paho
+
+from . import __version__
+from .counter import ClockSteppedBack, Counter, Occupancy, State
+
+_log = logging.getLogger("pirsim_live")
+_KEYS = ("occupancy", "presence", "motion", "state")
+_ON = {"1", "on", "true", "yes", "motion", "detected", "occupied"}
+_OFF = {"0", "off", "false", "no", "clear", "no_motion", "none", "unoccupied"}
+
+
+def state_of(payload: bytes, key: str | None = None) -> State:
+    """What a message says; None: unknown, as of any word that is no state. Of JSON the key, or the first of occupancy,
+    presence, motion and state. Raises KeyError for JSON that says nothing of it, such as a battery's."""
+    text = payload.decode("utf-8", "replace").strip()
+    try:
+        told = json.loads(text)
+    except ValueError:
+        told = text
+    if isinstance(told, dict):
+        told = told[key or next((one for one in _KEYS if one in told), _KEYS[0])]
+    word = str(told).lower()
+    return True if word in _ON else False if word in _OFF else None
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a sensor's messages come from."""
+
+    sensor: str
+    topic: str
+    key: str | None = None
+    """Of a JSON message."""
+
+    @classmethod
+    def of(cls, text: str) -> Source:
+        """SENSOR=TOPIC, or SENSOR=TOPIC:KEY. Raises ValueError."""
+        sensor, equals, topic = text.partition("=")
+        topic, colon, key = topic.rpartition(":") if ":" in topic else (topic, "", "")
+        if not (sensor and equals and topic) or (colon and not key) or set("#+") & set(topic):
+            raise ValueError(f"expected SENSOR=TOPIC or SENSOR=TOPIC:KEY, got {text!r}")
+        return cls(sensor, topic, key or None)
+
+
+class Bridge:
+    """A counter between a broker's topics. One thread: call turn() again and again, or run()."""
+
+    def __init__(self, counter: Counter, sources: Iterable[Source], client: paho.Client, *, name: str = "pirsim",
+                 off_at: float = 0.9, discovery: str = "homeassistant", state_file: str | os.PathLike[str] | None = None,
+                 clock: Callable[[], float] = time.time, monotonic: Callable[[], float] = time.monotonic) -> None:
+        """client: not connected yet; its callbacks and its will are the bridge's. Raises ValueError if a sensor of the
+        counter has no topic, or a topic is of none."""
+        self._sources = list(sources)
+        told = [source.sensor for source in self._sources]
+        if sorted(told) != sorted(counter.sensors):
+            raise ValueError(f"the counter is for {', '.join(counter.sensors)}; topics are told of {', '.join(told) or 'none'}")
+        self._counter, self._client, self._name, self._discovery = counter, client, name, discovery
+        self._occupancy = Occupancy(off_at)
+        self._clock, self._monotonic = clock, monotonic
+        self._state_file, self._moments = state_file, (clock(), monotonic())
+        self._connected = False
+        if state_file is not None and os.path.exists(state_file):
+            try:
+                with open(state_file, encoding="utf-8") as file:
+                    counter.restore(json.load(file))
+            except (ValueError, KeyError, TypeError) as fault:
+                _log.warning("%s: begins anew: %s", state_file, fault)
+        client.will_set(self._topic("status"), "offline", qos=1, retain=True)
+        client.on_connect, client.on_message, client.on_disconnect = self._greet, self._hear, self._lose
+
+    def _topic(self, what: str) -> str:
+        return f"pirsim/{self._name}/{what}"
+
+    # -- what the broker says -----------------------------------------------------------------------------------------
+
+    def _greet(self, client: paho.Client, _data: Any, _flags: Any, reason: Any, _properties: Any = None) -> None:
+        if reason.is_failure:
+            _log.error("the broker refuses: %s", reason)
+            return
+        self._connected = True
+        self._forget()  # who knows what was missed
+        for topic in sorted({source.topic for source in self._sources}):
+            client.subscribe(topic, qos=1)
+        client.publish(f"{self._discovery}/device/pirsim_{self._name}/config", json.dumps(self._device()), 1, True)
+        client.publish(self._topic("status"), "online", 1, True)
+        self._tell()
+
+    def _lose(self, _client: paho.Client, *_: Any) -> None:
+        if self._connected:
+            _log.warning("lost the broker: nothing is known of the sensors")
+        self._connected = False
+        self._forget()
+
+    def _hear(self, _client: paho.Client, _data: Any, message: paho.MQTTMessage) -> None:
+        if message.retain:  # of who knows when
+            return
+        for source in self._sources:
+            if source.topic != message.topic:
+                continue
+            try:
+                state = state_of(message.payload, source.key)
+            except KeyError:
+                continue
+            self._update({source.sensor: state})
+            if state and self._occupancy.is_on is not True:
+                self._occupancy.motion()
+                self._tell()
+
+    # -- the counter ---------------------------------------------------------------------------------------------------
+
+    def _forget(self) -> None:
+        self._update(dict.fromkeys(self._counter.sensors))
+
+    def _update(self, states: dict[str, State] | None = None) -> None:
+        now, ticks = self._clock(), self._monotonic()
+        stepped = (now - self._moments[0]) - (ticks - self._moments[1])
+        self._moments = now, ticks
+        if abs(stepped) > self._counter.step_s:
+            _log.warning("the clock stepped by %.0f s: nothing is known of the sensors", stepped)
+            if stepped < 0:
+                self._counter.reset()
+            else:
+                self._counter.forget(max(now - stepped, self._counter.time))
+        try:
+            ended = self._counter.update(now, states)
+        except ClockSteppedBack:  # by less than a reading: at the moment before
+            ended = self._counter.update(self._counter.time, states)
+        for estimate in ended:
+            self._occupancy.update(estimate)
+        if ended:
+            self._tell()
+            self._save()
+
+    def _save(self) -> None:
+        if self._state_file is None:
+            return
+        folder = os.path.dirname(os.path.abspath(self._state_file))
+        with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8") as file:
+            json.dump(self._counter.state(), file)
+        os.replace(file.name, self._state_file)
+
+    # -- what it says --------------------------------------------------------------------------------------------------
+
+    def _tell(self) -> None:
+        if not self._connected:
+            return
+        last, is_on = self._counter.last, self._occupancy.is_on
+        told = {"people": last.people if last else None,
+                "nobody": round(100 * last.p_nobody, 1) if last and last.p_nobody is not None else None,
+                "occupancy": None if is_on is None else "ON" if is_on else "OFF"}
+        self._client.publish(self._topic("state"), json.dumps(told), qos=1)
+
+    def _device(self) -> dict[str, Any]:
+        """As Home Assistant discovers it."""
+        def part(platform: str, key: str, name: str, **more: Any) -> dict[str, Any]:
+            return {"p": platform, "unique_id": f"pirsim_{self._name}_{key}", "name": name,
+                    "value_template": f"{{{{ value_json.{key} }}}}", "expire_after": round(3 * self._counter.step_s),
+                    "default_entity_id": f"{platform}.{self._name}_{key}", **more}
+        problem = {"p": "binary_sensor", "unique_id": f"pirsim_{self._name}_problem", "name": "Unlike the simulated rooms",
+                   "device_class": "problem", "entity_category": "diagnostic",
+                   "default_entity_id": f"binary_sensor.{self._name}_problem",
+                   "value_template": "ON" if self._counter.warning else "OFF"}
+        return {"dev": {"ids": [f"pirsim_{self._name}"], "name": self._name, "mf": "pirsim", "mdl": "people counter"},
+                "o": {"name": "pirsim-live", "sw": __version__},
+                "state_topic": self._topic("state"), "availability": [{"topic": self._topic("status")}], "qos": 1,
+                "cmps": {"people": part("sensor", "people", "People", state_class="measurement"),
+                         "nobody": part("sensor", "nobody", "Nobody there", unit_of_measurement="%"),
+                         "occupancy": part("binary_sensor", "occupancy", "Occupancy", device_class="occupancy"),
+                         "problem": problem}}
+
+    # -- its thread ----------------------------------------------------------------------------------------------------
+
+    def turn(self, timeout_s: float = 1.0) -> bool:
+        """Hears what the broker says within that time, and ends readings. False: the connection is lost."""
+        until_end = max(0.0, self._counter.next_end - self._clock())
+        alive = self._client.loop(min(timeout_s, until_end) if until_end else timeout_s) == paho.MQTT_ERR_SUCCESS
+        self._update()
+        return alive
+
+    def run(self, host: str, port: int, stopped: Callable[[], bool]) -> None:
+        """Until stopped. Connects again and again, at most a minute apart."""
+        pause_s, next_try = 1.0, -1e9
+        while not stopped():
+            if self._client.is_connected() or self._connected or self._client.socket() is not None:
+                if self.turn():
+                    pause_s = 1.0 if self._connected else pause_s
+                    continue
+                next_try = self._monotonic() + pause_s
+            elif self._monotonic() >= next_try:
+                try:
+                    self._client.connect(host, port, keepalive=30)
+                    continue
+                except OSError as fault:
+                    _log.warning("%s:%d: %s", host, port, fault)
+                pause_s = min(60.0, 2 * pause_s)
+                next_try = self._monotonic() + pause_s
+            time.sleep(0.2)
+            self._update()
+        if self._connected:
+            self._client.publish(self._topic("status"), "offline", 1, True)
+            self.turn(0.2)
+        self._client.disconnect()

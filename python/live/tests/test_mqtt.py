@@ -1,0 +1,263 @@
+"""The bridge with a real broker: what it hears is what pirsim counts, through all that happens to messages."""
+
+import json
+import pathlib
+import random
+import shutil
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+from test_counter import STEP_S, T0, bits_of, made, random_counter, same  # noqa: F401
+
+np = pytest.importorskip("numpy")
+counting = pytest.importorskip("pirsim.counting")
+paho = pytest.importorskip("paho.mqtt.client")
+pytestmark = pytest.mark.skipif(shutil.which("mosquitto") is None, reason="needs Debian's package mosquitto")
+
+from pirsim_live import Counter  # noqa: E402
+from pirsim_live.mqtt import Bridge, Source, state_of  # noqa: E402
+
+
+@pytest.mark.parametrize("payload, key, state", [
+    (b"ON", None, True), (b"off", None, False), (b"1", None, True), (b" 0 ", None, False), (b"unavailable", None, None),
+    (b"", None, None), (b"\xff", None, None), (b'"on"', None, True), (b"true", None, True), (b"null", None, False),
+    (b'{"occupancy": true, "battery": 97}', None, True), (b'{"state": "OFF"}', None, False),
+    (b'{"pir": 1, "occupancy": false}', "pir", True), (b'{"occupancy": null}', None, False)])
+def test_messages(payload, key, state):
+    assert state_of(payload, key) is state
+
+
+def test_json_without_a_state_says_nothing_and_topics_are_told_apart():
+    with pytest.raises(KeyError):
+        state_of(b'{"battery": 97}')
+    assert Source.of("hall=zigbee2mqtt/hall") == Source("hall", "zigbee2mqtt/hall")
+    assert Source.of("hall=a/b:pir") == Source("hall", "a/b", "pir")
+    for wrong in ("hall", "=a", "hall=", "hall=a/#", "hall=a:"):
+        with pytest.raises(ValueError):
+            Source.of(wrong)
+
+
+class Broker:
+    def __init__(self, folder, *lines):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.config = folder / "mosquitto.conf"
+        self.config.write_text("\n".join([f"listener {self.port} 127.0.0.1", "persistence false", "user root", *(lines or ["allow_anonymous true"])]))
+        self.start()
+
+    def start(self):
+        self.process = subprocess.Popen(["mosquitto", "-c", self.config], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for _ in range(100):
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", self.port)) == 0:
+                    return
+            time.sleep(0.05)
+        raise RuntimeError("mosquitto doesn't start")
+
+    def stop(self):
+        self.process.kill()
+        self.process.wait()
+
+
+@pytest.fixture
+def broker(tmp_path):
+    broker = Broker(tmp_path)
+    yield broker
+    broker.stop()
+
+
+class House:
+    """Sensors, a bridge, and a clock that stands still unless it is told."""
+
+    def __init__(self, broker, counter_file, folder):
+        self.broker, self.counter_file, self.folder = broker, counter_file, folder
+        self.now = self.ticks = T0
+        self.told = []  # estimates of all readings that ended
+        self.sensors = paho.Client(paho.CallbackAPIVersion.VERSION2)
+        self.sensors.connect("127.0.0.1", broker.port)
+        self.sensors.loop_start()
+        self.start()
+
+    def start(self):
+        counter = Counter(self.counter_file)
+        update = counter.update
+
+        def listened(*more):
+            ended = update(*more)
+            self.told += ended
+            return ended
+        counter.update = listened
+        self.client = paho.Client(paho.CallbackAPIVersion.VERSION2, clean_session=True)
+        self.bridge = Bridge(counter, [Source(name, f"house/{name}") for name in counter.sensors], self.client,
+                             state_file=self.folder / "state.json", clock=lambda: self.now, monotonic=lambda: self.ticks)
+        self.heard, self.subscribed = 0, 0
+        hear = self.client.on_message
+
+        def heard(*more):
+            hear(*more)
+            self.heard += 1
+        self.client.on_message = heard
+        self.client.on_subscribe = lambda *_: setattr(self, "subscribed", self.subscribed + 1)
+        self.connect()
+        self.counter = counter
+
+    def connect(self):
+        wanted = self.subscribed + len({source.topic for source in self.bridge._sources})
+        self.client.connect("127.0.0.1", self.broker.port)
+        self.until(lambda: self.subscribed >= wanted)
+
+    def until(self, holds):
+        for _ in range(2000):
+            if holds():
+                return
+            self.client.loop(0.01)
+        raise AssertionError("nothing came")
+
+    def go_to(self, at, step=0.0):
+        self.now, self.ticks = at, self.ticks + at - self.now - step
+        self.bridge._update()
+
+    def say(self, sensor, payload, times=1, retain=False):
+        wanted = self.heard + times
+        for _ in range(times):
+            self.sensors.publish(f"house/{sensor}", payload, qos=1, retain=retain).wait_for_publish(5)
+        self.until(lambda: self.heard >= wanted)
+
+    def stop(self):
+        self.client.disconnect()
+        self.sensors.loop_stop()
+        self.sensors.disconnect()
+
+
+@pytest.mark.parametrize("days", [1, pytest.param(30, marks=pytest.mark.slow)])
+def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are_counted_as_pirsim_does(
+        days, broker, made, tmp_path):  # noqa: F811
+    draw = random.Random(days)
+    file = made(draw, sensors=2)
+    house = House(broker, file, tmp_path)
+    names, known, at = house.counter.sensors, [], T0  # known: (time, sensor, state) as the bridge may know them
+    for _ in range(240 * days):
+        at = round(at + draw.expovariate(days * 240 / (days * 86400 - 3600)), 3)
+        house.go_to(at)
+        happens = draw.random()
+        sensor, state = draw.choice(names), draw.random() < 0.5
+        if happens < 0.01:  # the bridge starts anew
+            house.client.disconnect()
+            house.client.loop(0.01)
+            house.start()
+            begin = STEP_S * int(at // STEP_S)
+            known = [event for event in known if event[0] < begin] + [(begin, name, None) for name in names]
+        elif happens < 0.02:  # the broker does
+            broker.stop()
+            house.until(lambda: not house.bridge._connected)
+            known += [(at, name, None) for name in names]
+            broker.start()
+            house.connect()
+            house.sensors.reconnect()
+        elif happens < 0.03:  # the clock steps: an hour that never was
+            at += 3600
+            house.go_to(at, step=3600)
+            known += [(at - 3600, name, None) for name in names]
+        elif happens < 0.06:  # a message that the broker keeps for whoever comes later, and is older than that
+            house.say(sensor, "ON", retain=True)
+            known.append((at, sensor, True))
+            house.client.unsubscribe(f"house/{sensor}")
+            house.client.subscribe(f"house/{sensor}", 1)
+            wanted = house.heard + 1
+            house.until(lambda: house.heard >= wanted)
+            house.sensors.publish(f"house/{sensor}", b"", qos=1, retain=True).wait_for_publish(5)
+            wanted += 1
+            house.until(lambda: house.heard >= wanted)
+            known.append((at, sensor, None))  # an empty message says nothing
+        else:
+            house.say(sensor, draw.choice(["ON", '{"occupancy": true}'] if state else ["OFF", '{"occupancy": false}']),
+                      times=2 if draw.random() < 0.1 else 1)
+            known.append((at, sensor, state))
+    n = int((at - T0) // STEP_S) + 1
+    house.go_to(T0 + n * STEP_S)
+    assert [one.time for one in house.told] == [T0 + STEP_S * (i + 1) for i in range(n)]
+    bits = bits_of(known, names, n)
+    assert 0.02 < (bits == 2).mean() < 0.9 and (bits == 1).sum() > 20
+    same(house.told, counting.load(file).estimate(bits, smoothed=False).probabilities)
+    house.stop()
+
+
+def test_home_assistant_is_told_of_a_device_and_hears_motion_at_once(broker, made, tmp_path):  # noqa: F811
+    seen = {}
+    watcher = paho.Client(paho.CallbackAPIVersion.VERSION2)
+    watcher.on_message = lambda _client, _data, message: seen.__setitem__(message.topic, message.payload.decode())
+    watcher.connect("127.0.0.1", broker.port)
+    watcher.subscribe([("homeassistant/#", 1), ("pirsim/#", 1)])
+    watcher.loop_start()
+    house = House(broker, made(random.Random(4), sensors=2), tmp_path)
+
+    def until(holds):
+        for _ in range(1000):
+            if holds():
+                return
+            house.client.loop(0.01)
+            time.sleep(0.005)
+        raise AssertionError(seen)
+    until(lambda: len(seen) >= 3)
+    device = json.loads(seen["homeassistant/device/pirsim_pirsim/config"])
+    parts = device["cmps"]
+    assert {name: part["p"] for name, part in parts.items()} == {
+        "people": "sensor", "nobody": "sensor", "occupancy": "binary_sensor", "problem": "binary_sensor"}
+    assert len({part["unique_id"] for part in parts.values()}) == 4 and parts["people"]["expire_after"] == 90
+    assert seen["pirsim/pirsim/status"] == "online"
+    assert json.loads(seen["pirsim/pirsim/state"]) == {"people": None, "nobody": None, "occupancy": None}
+    house.say("sensor_1", "ON")
+    until(lambda: json.loads(seen["pirsim/pirsim/state"])["occupancy"] == "ON")
+    house.say("sensor_1", "OFF")
+    house.go_to(T0 + 60)
+    until(lambda: json.loads(seen["pirsim/pirsim/state"])["people"] is not None)
+    assert 0 <= json.loads(seen["pirsim/pirsim/state"])["nobody"] <= 100
+    house.client.socket().shutdown(socket.SHUT_RDWR)  # dies without a word
+    until(lambda: seen["pirsim/pirsim/status"] == "offline")
+    watcher.loop_stop()
+    house.stop()
+
+
+def test_the_command_counts_with_a_password_and_goes_on_after_the_broker_did(made, tmp_path):  # noqa: F811
+    subprocess.run(["mosquitto_passwd", "-c", "-b", tmp_path / "passwords", "bridge", "secret"], check=True, capture_output=True)
+    broker = Broker(tmp_path, f"password_file {tmp_path / 'passwords'}")
+    (tmp_path / "password").write_text("secret\n")
+    word = ["mqtt", "--counter", str(made(random.Random(5), sensors=1)), "--broker", "127.0.0.1", "--port", str(broker.port),
+            "--sensor", "sensor_1=hall", "--user", "bridge", "--password-file", str(tmp_path / "password")]
+    (tmp_path / "options").write_text("\n".join(word[1:]))
+    command = [sys.executable, "-m", "pirsim_live", "mqtt", f"@{tmp_path / 'options'}"]
+    seen = []
+    watcher = paho.Client(paho.CallbackAPIVersion.VERSION2)
+    watcher.username_pw_set("bridge", "secret")
+    watcher.on_connect = lambda client, *_: client.subscribe("pirsim/pirsim/status", 1)
+    watcher.on_message = lambda _client, _data, message: seen.append(message.payload.decode())
+    watcher.reconnect_delay_set(1, 1)
+    watcher.connect("127.0.0.1", broker.port)
+    watcher.loop_start()
+    bridge = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+    def until(holds, seconds=20):
+        for _ in range(20 * seconds):
+            if holds():
+                return
+            time.sleep(0.05)
+        bridge.kill()
+        raise AssertionError((seen, bridge.communicate()[1]))
+    until(lambda: seen[-1:] == ["online"])
+    broker.stop()
+    seen.clear()
+    broker.start()
+    until(lambda: seen[-1:] == ["online"])
+    bridge.terminate()
+    assert bridge.wait(10) == 0
+    until(lambda: seen[-1:] == ["offline"])
+    watcher.loop_stop()
+    broker.stop()
+    for wrong, code in ((["mqtt", "--counter", "nowhere.json", *word[3:]], 4), ([*word, "--sensor", "hall=x"], 2)):
+        result = subprocess.run([sys.executable, "-m", "pirsim_live", *wrong], capture_output=True, text=True)
+        assert result.returncode == code and result.stderr.startswith("error: "), result
+    assert pathlib.Path(word[2]).exists()
