@@ -38,6 +38,8 @@ enum class Purpose : std::uint32_t {
   home_meals = 27,         ///< when a household eats, who cooks, when a visitor comes
   door_habit = 28,         ///< after which passes a door is shut at once
   schedule_warmth = 31,    ///< clothes, sleeves, hair and skin of the people of a schedule
+  home_errands = 32,       ///< what a resident gets up for, where they go at home and how long they stop there
+  home_restlessness = 33,  ///< how much longer than others a resident stays seated; the same on all days
   effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -54,10 +55,32 @@ constexpr double lunch_cooking_s = 45.0 * minute_s, dinner_cooking_s = 50.0 * mi
 constexpr double shortest_pastime_s = 5.0 * minute_s;
 constexpr double work_between_breaks_s = 90.0 * minute_s, break_s = 10.0 * minute_s;  // 60 to 120, 5 to 15
 
-/// Of this mean, a third or three times as long in one of a hundred cases.
-double about(Stream& stream, double mean) {
-  constexpr double sigma = 0.45;  // assumed (0.3-0.6)
-  return mean * std::exp(sigma * cut_normal(stream) - 0.5 * sigma * sigma);
+// On foot. Derivation and ranges: docs/physics/homes.md.
+constexpr double sits_s = 12.0 * minute_s, sits_at_work_s = 18.0 * minute_s;  // means
+constexpr double sits_log_sd = 1.0, between_people_log_sd = 0.3;
+constexpr double shortest_s = 5.0;  // of a stop
+
+/// How somebody goes about who is on foot: how long a stop lasts in the mean, and the share of stops in each reach; the
+/// rest is at their own place.
+struct Footwork {
+  double stop_s;
+  double here, kitchen, elsewhere;
+};
+constexpr Footwork cooking{30.0, 0.35, 0.0, 0.02};
+constexpr Footwork errand{30.0, 0.8, 0.1, 0.1};
+constexpr double further_stop = 0.5;  // of an errand
+struct Chore {
+  double share;
+  Footwork footwork;
+};
+constexpr std::array<Chore, 3> kinds_of_chores{{{0.4, {60.0, 0.3, 0.0, 0.05}},    // dishes, ironing
+                                                {0.4, {20.0, 0.93, 0.0, 0.05}},   // tidying, laundry
+                                                {0.2, {8.0, 0.97, 0.0, 0.03}}}};  // vacuuming
+
+constexpr double durations_log_sd = 0.45;  // assumed (0.3-0.6): a third or three times the mean in one of 100 cases
+
+double about(Stream& stream, double mean, double log_sd = durations_log_sd) {
+  return mean * std::exp(log_sd * cut_normal(stream) - 0.5 * log_sd * log_sd);
 }
 
 /// What somebody does at each moment of a day. What is put in later takes the place of what was there.
@@ -440,19 +463,31 @@ class Day {
 
 enum class Posture { sit, lie, stand };
 
+/// The area that a point is in, as an index; of points in none: the number of areas.
+std::size_t room_of(const SceneSpec& scene, const Vec2& point) {
+  const auto area = std::ranges::find_if(scene.areas, [&](const AreaSpec& a) { return a.outline.contains(point); });
+  return static_cast<std::size_t>(area - scene.areas.begin());
+}
+
 /// A seat or a place that people may take.
 struct Spot {
   std::string id;
   Posture posture = Posture::sit;
   std::vector<std::string> uses;
+  Vec2 point{0.0};
+  std::size_t room = 0;
   double taken_until_s = 0.0;  ///< by whoever came last
 };
 
 std::vector<Spot> spots_of(const SceneSpec& scene) {
   std::vector<Spot> spots;
-  for (const SeatSpec& seat : scene.seats) spots.push_back({seat.id, Posture::sit, seat.uses});
+  const auto add = [&](const auto& of, const Frame& frame, Posture posture) {
+    const Vec2 point = floor_point(frame.origin);
+    spots.push_back({of.id, posture, of.uses, point, room_of(scene, point)});
+  };
+  for (const SeatSpec& seat : scene.seats) add(seat, seat.world_from_seat, Posture::sit);
   for (const PlaceSpec& place : scene.places)
-    spots.push_back({place.id, place.posture == PlacePosture::lie ? Posture::lie : Posture::stand, place.uses});
+    add(place, place.world_from_place, place.posture == PlacePosture::lie ? Posture::lie : Posture::stand);
   return spots;
 }
 
@@ -462,6 +497,7 @@ bool is_for(const Spot& spot, std::string_view use) { return std::ranges::find(s
 struct PlannedStay {
   std::size_t person = 0;
   HomeStay stay;
+  Spot* spot = nullptr;  ///< none: wherever they are
 };
 
 class HomeDayPlan {
@@ -474,13 +510,20 @@ class HomeDayPlan {
         door_(schedule_.entrances.empty() ? study.scene().entrances.front().id : schedule_.entrances.front()),
         lines_(trial_.people.size(), ActionLine(schedule_)),
         state_(trial_.people.size()) {
-    for (std::size_t i = 0; i < trial_.people.size(); ++i)
-      conduct_.emplace_back(StreamKey{study.seed(), run, static_cast<std::uint32_t>(i), Purpose::schedule_conduct});
+    for (std::uint32_t i = 0; i < trial_.people.size(); ++i) {
+      conduct_.emplace_back(StreamKey{study.seed(), run, i, Purpose::schedule_conduct});
+      errands_.emplace_back(StreamKey{study.seed(), run, i, Purpose::home_errands});
+      Stream habit({study.seed(), 0, i, Purpose::home_restlessness});
+      calm_.push_back(about(habit, 1.0, between_people_log_sd));
+      places_.emplace_back(study.scene(), trial_.people[i], door_);
+    }
     drawn_ = draw_home_day(*schedule_.household, study.seed(), run, day_of(study, run));
   }
 
   DayPlan take() {
-    for (const PlannedStay& planned : in_order()) spend(planned.person, planned.stay);
+    planned_ = in_order();
+    for (PlannedStay& planned : planned_) planned.spot = spot_for(planned.person, planned.stay);
+    for (const PlannedStay& planned : planned_) spend(planned.person, planned.stay, planned.spot);
     DayPlan plan;
     for (std::size_t i = 0; i < trial_.people.size(); ++i)
       plan.push_back(trial_.people[i].spec.part ? lines_[i].take() : trial_.people[i].spec.actions);
@@ -509,42 +552,146 @@ class HomeDayPlan {
     return all;
   }
 
-  void spend(std::size_t person, const HomeStay& stay) {
+  void spend(std::size_t person, const HomeStay& stay, const Spot* spot) {
     ActionLine& line = lines_[person];
+    const ScheduledPerson& part = *trial_.people[person].spec.part;
     if (stay.activity == HomeActivity::away) {
       if (state_[person] == State::present) line.at(stay.from_s, action::Leave{door_});
       state_[person] = State::away;
       return;
     }
-    if (state_[person] == State::unborn && trial_.people[person].spec.part->part == SchedulePart::resident) {
-      line.at(stay.from_s, action::Appear{{}, 0.0, trial_.people[person].spec.part->seat});
+    if (state_[person] == State::unborn && part.part == SchedulePart::resident) {
+      line.at(stay.from_s, action::Appear{{}, 0.0, part.seat});
     } else if (state_[person] != State::present) {
       line.at(stay.from_s, action::Enter{door_});
     }
     const bool was_there = state_[person] != State::unborn;
     state_[person] = State::present;
     const HomeManner manner = manner_of(stay.activity);
-    Spot* const spot = spot_for(person, stay, manner);
     if (spot == nullptr) return line.at(stay.from_s, action::Wait{until_next_s}, manner.phase);
-    spot->taken_until_s = stay.to_s;
-    if (was_there || spot->id != trial_.people[person].spec.part->seat) take(line, stay.from_s, *spot, manner.phase);
-    if (stay.activity == HomeActivity::work && spot->posture == Posture::sit) {
-      const std::vector<action::Work> works = draw_desk_work(conduct_[person], stay.to_s - stay.from_s);
-      for (const action::Work& work : works) line.then(work, manner.phase);
-      return;
+    if (was_there || spot->id != part.seat) line.at(stay.from_s, going_to(*spot), manner.phase);
+    const bool is_resident = part.part == SchedulePart::resident;
+    if (stay.activity == HomeActivity::cook) return go_about(person, stay, *spot, cooking);
+    if (stay.activity == HomeActivity::chores) {
+      std::array<double, kinds_of_chores.size()> shares{};
+      std::ranges::transform(kinds_of_chores, shares.begin(), &Chore::share);
+      return go_about(person, stay, *spot, kinds_of_chores[pick(errands_[person], shares)].footwork);
     }
-    line.then(action::Wait{until_next_s, fitting(manner.activity, spot->posture)}, manner.phase);
+    if (spot->posture == Posture::sit && stay.activity != HomeActivity::toilet && is_resident)
+      return sit_and_get_up(person, stay, *spot);
+    be_at(person, stay.activity, *spot, stay.to_s - stay.from_s);
   }
 
-  static void take(ActionLine& line, double at_s, const Spot& spot, const char* phase) {
+  /// Having got there.
+  void be_at(std::size_t person, HomeActivity activity, const Spot& spot, double for_s) {
+    const HomeManner manner = manner_of(activity);
+    if (activity != HomeActivity::work || spot.posture != Posture::sit)
+      return lines_[person].then(action::Wait{until_next_s, fitting(manner.activity, spot.posture)}, manner.phase);
+    for (const action::Work& work : draw_desk_work(conduct_[person], for_s)) lines_[person].then(work, manner.phase);
+  }
+
+  /// From stop to stop until something else is due.
+  void go_about(std::size_t person, const HomeStay& stay, const Spot& own, const Footwork& footwork) {
+    const HomeManner manner = manner_of(stay.activity);
+    ActionLine& line = lines_[person];
+    const Spot* by = &own;
+    for (double now = stay.from_s; now < stay.to_s;) {
+      const auto place = next_place(person, by, own, footwork, now);
+      line.then(place ? Action(action::Walk{{*place}}) : going_to(own), manner.phase);
+      const double stop_s = shortest_s + exponential(errands_[person], footwork.stop_s - shortest_s);
+      line.then(action::Wait{stop_s, fitting(manner.activity, place ? Posture::stand : own.posture)}, manner.phase);
+      now += stop_s;
+    }
+  }
+
+  /// Now and then they get up for something: a drink, the phone, the window. Then they come back.
+  void sit_and_get_up(std::size_t person, const HomeStay& stay, const Spot& seat) {
+    constexpr double way_s = 10.0;  // about, to a stop
+    const char* phase = manner_of(stay.activity).phase;
+    const double mean_s = calm_[person] * (stay.activity == HomeActivity::work ? sits_at_work_s : sits_s);
+    Stream& stream = errands_[person];
+    for (double now = stay.from_s;;) {
+      const double up_s = now + about(stream, mean_s, sits_log_sd);
+      double back_s = up_s + way_s;
+      std::vector<std::pair<Vec2, double>> stops;
+      const Spot* by = &seat;
+      do {
+        const double stop_s = shortest_s + exponential(stream, errand.stop_s - shortest_s);
+        if (const auto place = next_place(person, by, seat, errand, up_s)) stops.emplace_back(*place, stop_s);
+        back_s += way_s + stop_s;
+      } while (stream.uniform() < further_stop);
+      const bool gets_up = !stops.empty() && back_s < stay.to_s;
+      be_at(person, stay.activity, seat, (gets_up ? up_s : stay.to_s) - now);
+      if (!gets_up) return;
+      ActionLine& line = lines_[person];
+      bool first = true;
+      for (const auto& [place, stop_s] : stops) {
+        const action::Walk walk{{place}};
+        first ? line.at(up_s, walk, phase) : line.then(walk, phase);
+        line.then(action::Wait{stop_s}, phase);
+        first = false;
+      }
+      line.then(going_to(seat), phase);
+      now = back_s;
+    }
+  }
+
+  /// Where the next stop of somebody by a spot is; none: at their own place, or where they are. Others who want to be
+  /// alone stay so.
+  std::optional<Vec2> next_place(std::size_t person, const Spot*& by, const Spot& own, const Footwork& footwork,
+                                 double at_s) {
+    constexpr double within_m = 3.0, at_spot_m = 2.0;  // assumed (2-4, 1.5-2.5)
+    const double u = errands_[person].uniform();
+    if (u < footwork.here) return near(person, *by, within_m);
+    const bool is_own = u >= footwork.here + footwork.kitchen + footwork.elsewhere;
+    const Spot* const other =
+        is_own ? &own : in_other_room(person, *by, at_s, u < footwork.here + footwork.kitchen ? "cook" : "");
+    if (other == nullptr) return near(person, *by, within_m);
+    by = other;
+    return is_own ? std::nullopt : near(person, *by, at_spot_m);
+  }
+
+  std::optional<Vec2> near(std::size_t person, const Spot& spot, double within_m) {
+    constexpr std::size_t most = 8;  // of which the first may lie behind a wall
+    for (const Vec2& place : places_[person].around(spot.point, within_m, most, errands_[person]))
+      if (room_of(study_.scene(), place) == spot.room) return place;
+    return std::nullopt;
+  }
+
+  /// A spot of that use, or of any, in one of the rooms that have some; none: nullptr.
+  const Spot* in_other_room(std::size_t person, const Spot& by, double at_s, std::string_view use) {
+    Stream& stream = errands_[person];
+    std::map<std::size_t, std::vector<const Spot*>> rooms;
+    for (const Spot& spot : spots_) {
+      if (spot.room != by.room && (use.empty() || is_for(spot, use)) && !is_private(spot.room, person, at_s))
+        rooms[spot.room].push_back(&spot);
+    }
+    if (rooms.empty()) return nullptr;
+    const auto& spots = std::next(rooms.begin(), stream.index(static_cast<std::uint32_t>(rooms.size())))->second;
+    return spots[stream.index(static_cast<std::uint32_t>(spots.size()))];
+  }
+
+  /// Whether somebody else sleeps or washes there.
+  [[nodiscard]] bool is_private(std::size_t room, std::size_t person, double at_s) const {
+    return std::ranges::any_of(planned_, [&](const PlannedStay& planned) {
+      const auto [activity, from_s, to_s] = planned.stay;
+      const bool alone =
+          activity == HomeActivity::sleep || activity == HomeActivity::toilet || activity == HomeActivity::wash;
+      return alone && planned.person != person && planned.spot != nullptr && planned.spot->room == room &&
+             from_s <= at_s && at_s < to_s;
+    });
+  }
+
+  static Action going_to(const Spot& spot) {
     switch (spot.posture) {
       case Posture::sit:
-        return line.at(at_s, action::Sit{spot.id}, phase);
+        return action::Sit{spot.id};
       case Posture::lie:
-        return line.at(at_s, action::Lie{spot.id}, phase);
+        return action::Lie{spot.id};
       case Posture::stand:
-        return line.at(at_s, action::Stand{spot.id}, phase);
+        break;
     }
+    return action::Stand{spot.id};
   }
 
   /// What a person of natural style can do in that posture.
@@ -556,8 +703,16 @@ class HomeDayPlan {
     return is_standing == (posture == Posture::stand) ? activity : std::nullopt;
   }
 
-  /// Sleepers have their own. Of others the first that is free, beginning with another for each person; none: nullptr.
-  Spot* spot_for(std::size_t person, const HomeStay& stay, const HomeManner& manner) {
+  /// Takes it. Sleepers have their own. Of others the first that is free, beginning with another for each person; none:
+  /// nullptr.
+  Spot* spot_for(std::size_t person, const HomeStay& stay) {
+    if (stay.activity == HomeActivity::away) return nullptr;
+    Spot* const spot = free_spot(person, stay, manner_of(stay.activity));
+    if (spot != nullptr) spot->taken_until_s = stay.to_s;
+    return spot;
+  }
+
+  Spot* free_spot(std::size_t person, const HomeStay& stay, const HomeManner& manner) {
     const std::string& bed = trial_.people[person].spec.part->seat;
     if (stay.activity == HomeActivity::sleep && !bed.empty()) return &*std::ranges::find(spots_, bed, &Spot::id);
     const auto is_free = [&](const Spot& spot) {
@@ -588,8 +743,11 @@ class HomeDayPlan {
   std::string door_;
   std::vector<ActionLine> lines_;
   std::vector<State> state_;
-  std::vector<Stream> conduct_;  ///< (n_people)
+  std::vector<Stream> conduct_, errands_;  ///< (n_people) at the desk, on foot
+  std::vector<double> calm_;               ///< (n_people) how much longer than others they stay seated
+  std::vector<StandingPlaces> places_;     ///< (n_people)
   HomeDay drawn_;
+  std::vector<PlannedStay> planned_;
 };
 
 }  // namespace
