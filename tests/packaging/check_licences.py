@@ -14,7 +14,7 @@ import tomllib
 
 # Of every system that a program for it runs on: pirsim doesn't carry them.
 SYSTEM = re.compile(r"(linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|gcc_s|stdc\+\+))[.-]")
-TOOLS = {"build-essential", "cmake", "ninja-build", "pkg-config", "catch2", "tzdata"}  # needed, not carried
+TOOLS = {"build-essential", "cmake", "ninja-build", "pkg-config", "catch2", "tzdata", "mosquitto"}  # needed, not carried
 
 
 def needed_by(file):
