@@ -213,6 +213,10 @@ class Control {
   std::unique_ptr<State> state_;
 };
 
+/// The rule, each light with the delay that is advised and the sentence about it, as YAML that read_rule() takes.
+/// Lights without advice keep theirs. costs: of the rule.
+[[nodiscard]] std::string advised_rule(RuleSpec rule, const Costs& costs);
+
 /// Costs in (draws) of who may have been there, all as likely: their means, each with the middle 90 % of the draws. No
 /// moments in the dark are told.
 [[nodiscard]] Costs expected_of(std::span<const Costs> draws);

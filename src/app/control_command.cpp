@@ -25,7 +25,7 @@ struct ControlOptions {
   std::vector<std::filesystem::path> rows;
   LogInputs log;
   Inputs inputs;  ///< of the scene
-  std::filesystem::path rule, counter, output, report, light;
+  std::filesystem::path rule, counter, output, report, light, advised;
   std::vector<double> delays_min;
   std::optional<double> window_s, at_most_a_week;
 };
@@ -97,6 +97,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
   if (options.inputs.verbosity != Verbosity::quiet) std::cout << control::to_text(costs);
   require_written();
   if (!options.output.empty()) io::write_text_file(options.output, control::to_csv(costs));
+  if (!options.advised.empty()) io::write_text_file(options.advised, control::advised_rule(rule, costs));
   if (!options.report.empty()) {
     io::Report report = control::control_page(costs, days, view_command(options));
     std::vector<std::filesystem::path> files = options.rows.empty() ? options.log.files : options.rows;
@@ -104,7 +105,7 @@ void control_rows(const ControlOptions& options, Source&& source) {
     report.footer = made_from(files);
     io::write_report(options.report, report);
   }
-  tell_written({{options.output}, {options.light}, {options.report}}, options.inputs.verbosity);
+  tell_written({{options.output}, {options.light}, {options.advised}, {options.report}}, options.inputs.verbosity);
 }
 
 void check_options(const ControlOptions& options) {
@@ -174,6 +175,8 @@ void add_control_command(CLI::App& app) {
                "a page with the curves, the lit times and the worst moments, .html", {".html"});
   offer_output(command, "--light", options->light, "rows of when each light is on, .csv, .csv.gz or .csv.zst",
                io::table_endings());
+  offer_output(command, "--advised", options->advised, "the rule with the delays that are advised, .yaml",
+               {".yaml", ".yml"});
   offer_quiet(command, inputs.verbosity);
   command.callback([options] { control_light(*options); });
 }

@@ -11,6 +11,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "files/disk/file.hpp"
 #include "files/read/reader_parts.hpp"
+#include "files/write/script_writer.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/check_scene.hpp"
 #include "model/schema/clock.hpp"
@@ -822,6 +823,23 @@ Advice advise(const LightCosts& light) {
   if (const DelayCosts* at = first(a_week))
     return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at) + counter};
   return {Ground::no_delay, {}, name + no_delay(light) + counter};
+}
+
+std::string advised_rule(RuleSpec rule, const Costs& costs) {
+  std::string text;
+  YAML::Node root;
+  root["pirsim_control"] = 1;
+  root["name"] = rule.name;
+  for (std::size_t i = 0; i < rule.lights.size(); ++i) {
+    LightSpec& light = rule.lights[i];
+    const Advice advice = advise(costs.lights[i]);
+    if (advice.delay_min) light.delays_min = {*advice.delay_min};
+    YAML::Node written = io::written(light);
+    if (light.door.empty()) written.remove("settle_s");  // it is a door's
+    root["lights"].push_back(written);
+    text += "# " + advice.sentence + '\n';
+  }
+  return text + YAML::Dump(root) + '\n';
 }
 
 RuleSpec rule_for(std::optional<RuleSpec> given, const SceneSpec* scene, const std::string& name,

@@ -41,7 +41,7 @@ FLAT_VALUES = {"--rooms": "2", "--residents": "1", "--size": "60", "--layout": "
                "--mount": "ceiling", "--model": "EKMC1601111"}
 ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5", **FLAT_VALUES}
-VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--by-day": "days.csv", "--by-hour": "hours.csv", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--by-day": "days.csv", "--advised": "advised.yaml", "--by-hour": "hours.csv", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
@@ -384,6 +384,11 @@ class Light(Case):
         self.assertNotEqual(by_all.split("light,delay_min")[1], plain.split("light,delay_min")[1])
         page = self.folder / "light.html"
         pirsim("control", self.two_rooms, "--rule", rule, "-q", "-o", self.folder / "costs.csv", "--report", page)
+        told = pirsim("control", self.two_rooms, "--rule", rule, "--advised", self.folder / "advised.yaml").stdout
+        again = pirsim("control", self.two_rooms, "--rule", self.folder / "advised.yaml").stdout
+        best = re.search(r"(?:best guess is |: )([\d.]+) min", told)[1]
+        self.assertIn(f"With a delay of {best} min", again)
+        self.assertIn(best, (self.folder / "advised.yaml").read_text())
         self.assertRegex(page.read_text(), "<footer>pirsim [^<]*, rows.csv, rule.yaml</footer>")
 
     def test_seats_that_no_sensor_notices_are_told(self):
