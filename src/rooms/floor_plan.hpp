@@ -101,6 +101,8 @@ struct Demands {
   std::size_t least_places = 0;            ///< of a grid of 0.25 m, where each sensor must see who stands there
 };
 
+/// What the largest person can't reach from the entrances, as who looked for a way says it; or nothing.
+[[nodiscard]] std::string unreached(const SceneSpec& scene);
 /// Why nobody could use what was drawn, or nothing: what the largest person can't reach from the entrances, a sensor
 /// that sees nobody.
 [[nodiscard]] std::string fault_of(const SceneSpec& scene, const Demands& demands = {});
