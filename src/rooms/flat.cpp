@@ -525,13 +525,14 @@ class FlatFurnisher {
     add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
   }
 
-  /// Where it fits.
+  /// Where it fits; a drawn flat may go without.
   void add_shelf(RoomFloor& floor) {
     const double half = 0.5 * width({0.8, 1.6});
     const double height = one_of(std::vector<double>{0.8, 1.2, 2.0}, stream_);
     const Rectangle solid{{-half, -0.35}, {half, -off_wall_m}};
     const auto spot = put_at_wall(floor, {solid, {{-half, -0.8}, {half, -off_wall_m}}}, half);
-    if (spot) add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+    if (spot) return add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+    if (asked_ != nullptr) fail("there was no place for a shelf");
   }
 
   const FlatSpec& spec_;
@@ -852,12 +853,20 @@ void build_shell(const FlatPlan& plan, double height_m, SceneSpec& scene) { Shel
 
 namespace {
 
-/// The first attempt without a fault. furnish(stream): a FurnishedFlat or NoPlace; fault_of(furnished): or nothing.
+/// Attempts at a flat, until one has no fault.
+struct Attempts {
+  std::string name;        ///< of the scene
+  std::string drawn_from;  ///< for messages
+  int most = 0;
+  Where where;
+};
+
+/// furnish(stream): a FurnishedFlat or NoPlace; fault_of(scene, demands): or nothing.
 template <typename Furnish, typename FaultOf>
-DrawnFlat first_usable(std::uint64_t seed, int number, int most, const std::string& name, ModelFinder& models,
-                       const Where& where, const Furnish& furnish, const FaultOf& fault_of) {
+DrawnFlat first_usable(const Attempts& attempts, std::uint64_t seed, int number, ModelFinder& models,
+                       const Furnish& furnish, const FaultOf& fault_of) {
   Failures failures;
-  for (int tries = 1; tries <= most; ++tries) {
+  for (int tries = 1; tries <= attempts.most; ++tries) {
     Stream stream({seed, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(tries), Purpose::flat});
     auto drawn = furnish(stream);
     if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
@@ -867,13 +876,13 @@ DrawnFlat first_usable(std::uint64_t seed, int number, int most, const std::stri
     auto& [flat, demands] = std::get<FurnishedFlat>(drawn);
     flat.number = number;
     flat.tries = tries;
-    flat.scene.name = name;
+    flat.scene.name = attempts.name;
     models.add_to(flat.scene);
     const std::string fault = fault_of(flat.scene, demands);
     if (fault.empty()) return std::move(flat);
     failures.add(fault);
   }
-  failures.give_up("flat", number, where);
+  failures.give_up("flat", number, attempts.drawn_from, attempts.where);
 }
 
 }  // namespace
@@ -884,7 +893,7 @@ DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const 
   const int residents = draw(spec.residents, people);
   ModelFinder models({{spec.models, spec.models_where}}, spec.where, options);
   return first_usable(
-      seed, number, most_tries, "flat " + std::to_string(number), models, spec.where,
+      {"flat " + std::to_string(number), "these ranges", most_tries, spec.where}, seed, number, models,
       [&](Stream& stream) { return furnish_flat(spec, residents, stream); }, fault_of);
 }
 
@@ -902,7 +911,7 @@ DrawnFlat draw_flat(const HomePlanSpec& spec, std::uint64_t seed, int number, co
     faults.throw_if_errors();
     return drawn;
   };
-  return first_usable(seed, number, most_tries_of_plans, spec.name, models, spec.where, furnish,
+  return first_usable({spec.name, "this plan", most_tries_of_plans, spec.where}, seed, number, models, furnish,
                       [](const SceneSpec& scene, const Demands&) { return unreached(scene); });
 }
 

@@ -130,21 +130,6 @@ class FlatArchitect {
     draw_size();
   }
 
-  std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms) {
-    std::vector<InnerWall> walls;
-    for (const FlatRoom& one : rooms) {
-      for (const FlatRoom& other : rooms) {
-        const Rectangle &a = one.area, &b = other.area;
-        const Vec2 low{std::max(a.lower.x, b.lower.x), std::max(a.lower.y, b.lower.y)};
-        const Vec2 high{std::min(a.upper.x, b.upper.x), std::min(a.upper.y, b.upper.y)};
-        const bool is_upright = a.upper.x == b.lower.x && high.y > low.y;
-        const bool is_across = a.upper.y == b.lower.y && high.x > low.x;
-        if ((is_upright || is_across) && one.id != other.id) walls.push_back({low, high});
-      }
-    }
-    return walls;
-  }
-
   std::variant<FlatPlan, NoPlace> lay_out() {
     if (!lacking_.empty()) return NoPlace{lacking_};
     layout_ == FlatLayout::corridor ? add_rows_at_corridor() : add_rows_at_living_room();

@@ -250,7 +250,7 @@ void ModelFinder::add_to(SceneSpec& scene) {
   }
 }
 
-void Failures::give_up(const std::string& what, int number, const Where& where) const {
+void Failures::give_up(const std::string& what, int number, const std::string& drawn_from, const Where& where) const {
   std::string told;
   int tries = 0;
   for (const auto& [reason, times] : reasons_) {
@@ -259,7 +259,7 @@ void Failures::give_up(const std::string& what, int number, const Where& where) 
   }
   throw Error(ErrorCode::infeasible, where,
               what + ' ' + std::to_string(number) + ": none of " + std::to_string(tries) + ' ' + what +
-                  "s drawn from these ranges could be used (" + told + "): allow more space or less furniture");
+                  "s drawn from " + drawn_from + " could be used (" + told + "): allow more space or less furniture");
 }
 
 namespace {
@@ -639,7 +639,7 @@ DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const 
     if (fault.empty()) return std::move(room);
     failures.add(fault);
   }
-  failures.give_up("room", number, spec.where);
+  failures.give_up("room", number, "these ranges", spec.where);
 }
 
 }  // namespace pirsim::dataset

@@ -28,26 +28,26 @@ doors:
   - {from: living, into: bath, y_m: 2}
 )";
 
-std::string with(const std::string& what, const std::string& instead) {
+std::string two_rooms_with(const std::string& what, const std::string& instead) {
   std::string text = two_rooms;
   const std::size_t at = text.find(what);
   REQUIRE(at != std::string::npos);
   return text.replace(at, what.size(), instead);
 }
 
-HomePlanSpec read(const std::string& text) {
+HomePlanSpec plan_in(const std::string& text) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "plan.yaml") << text;
   return read_home_plan(folder.path() / "plan.yaml");
 }
 
-DrawnFlat drawn(const HomePlanSpec& plan, int number = 1) {
+DrawnFlat home_of(const HomePlanSpec& plan, int number = 1) {
   return draw_flat(plan, 1, number, test::shipped_sensors());
 }
 
-std::string fault(const std::string& text) {
+std::string plan_fault(const std::string& text) {
   try {
-    static_cast<void>(drawn(read(text)));
+    static_cast<void>(home_of(plan_in(text)));
   } catch (const Error& error) {
     std::string told;
     for (const Issue& issue : error.issues()) told += to_string(issue) + '\n';
@@ -56,16 +56,16 @@ std::string fault(const std::string& text) {
   return "";
 }
 
-DrawnFlat shipped(int number = 1) { return drawn(read_home_plan(test::data("recipes/my_flat.yaml")), number); }
+DrawnFlat shipped_home(int number = 1) { return home_of(read_home_plan(test::data("recipes/my_flat.yaml")), number); }
 
-const AreaSpec& area(const SceneSpec& scene, const std::string& id) {
+const AreaSpec& area_named(const SceneSpec& scene, const std::string& id) {
   return *std::ranges::find(scene.areas, id, &AreaSpec::id);
 }
 
 }  // namespace
 
 TEST_CASE("what a plan can't have is told with its place", "[home_plan]") {
-  CHECK(fault(two_rooms).empty());
+  CHECK(plan_fault(two_rooms).empty());
   using Case = std::array<const char*, 3>;
   for (const auto& [what, instead, told] : std::initializer_list<Case>{
            {"kind: bath", "kind: bth", "plan.yaml:4:22: error: room: kind"},
@@ -85,22 +85,24 @@ TEST_CASE("what a plan can't have is told with its place", "[home_plan]") {
            {"corner: top_left", "corner: top_left, model: EKMC1604112", "EKMC1604111"},
            {"corner: top_left", "height_m: 2", "height_m: it looks down from the ceiling"}}) {
     INFO(what << " -> " << instead);
-    CHECK_THAT(fault(with(what, instead)), contains(told));
+    CHECK_THAT(plan_fault(two_rooms_with(what, instead)), contains(told));
   }
 }
 
 TEST_CASE("a plan that nobody can walk through is refused, and names what isn't reached", "[home_plan]") {
-  // 0.6 m is wide enough for a plan, not for the largest person.
-  CHECK_THAT(fault(with("into: bath, y_m: 2", "into: bath, y_m: 2, width_m: 0.6")), contains("toilet"));
-  CHECK(fault(with("into: bath, y_m: 2", "into: bath, y_m: 2, width_m: 0.8")).empty());
+  const auto shelf = [](const std::string& size) {
+    return two_rooms_with("y_m: 3}", "y_m: 3}, {kind: shelf, wall: bottom, y_m: 2.44, " + size + '}');
+  };
+  CHECK_THAT(plan_fault(shelf("x_m: 5.27, width_m: 2.4")), contains("toilet"));  // from wall to wall
+  CHECK(plan_fault(shelf("x_m: 4.67, width_m: 1.2")).empty());
 }
 
 TEST_CASE("things are where the page has them", "[home_plan]") {
-  const SceneSpec scene = drawn(read(two_rooms)).scene;
+  const SceneSpec scene = home_of(plan_in(two_rooms)).scene;
   CHECK(scene.floor.area_m2() == Approx(16.0 + 7.5));
   CHECK(scene.floor.contains({5.0, -2.0}));
   CHECK_FALSE(scene.floor.contains({5.0, -0.5}));  // where the flat isn't a rectangle
-  CHECK(area(scene, "bath").outline.area_m2() == Approx(7.5));
+  CHECK(area_named(scene, "bath").outline.area_m2() == Approx(7.5));
   REQUIRE(scene.doors.size() == 2);
   CHECK(scene.doors[0].id == "front");
   CHECK(glm::distance(floor_point(scene.doors[1].world_from_door.origin), Vec2(4.0, -2.0)) < 1e-9);
@@ -125,10 +127,10 @@ TEST_CASE("rooms of one area have no wall between them, others have", "[home_pla
       return low.x < p.x && p.x < high.x && low.z < p.y && p.y < high.z && low.y < 1.0 && high.y > 1.0;
     });
   };
-  CHECK(walls_at(drawn(read(two_rooms)).scene, {4.0, -3.5}) == 1);
-  std::string joined = with("id: bath", "id: bath, area: living");
+  CHECK(walls_at(home_of(plan_in(two_rooms)).scene, {4.0, -3.5}) == 1);
+  std::string joined = two_rooms_with("id: bath", "id: bath, area: living");
   joined.resize(joined.find("  - {from"));
-  const SceneSpec scene = drawn(read(joined)).scene;
+  const SceneSpec scene = home_of(plan_in(joined)).scene;
   CHECK(walls_at(scene, {4.0, -3.5}) == 0);
   REQUIRE(scene.areas.size() == 1);
   CHECK(scene.areas[0].outline.area_m2() == Approx(23.5));
@@ -137,12 +139,12 @@ TEST_CASE("rooms of one area have no wall between them, others have", "[home_pla
 TEST_CASE(
     "the shipped plan is seven rooms, the same each time, and another one by number where it leaves something open",
     "[home_plan]") {
-  const DrawnFlat flat = shipped();
+  const DrawnFlat flat = shipped_home();
   CHECK(flat.scene.areas.size() == 7);
   CHECK(flat.scene.floor.area_m2() == Approx(63.0));
   CHECK(flat.residents == 3);
-  CHECK(io::scene_text(flat.scene, {}) == io::scene_text(shipped().scene, {}));
-  CHECK(io::scene_text(flat.scene, {}) != io::scene_text(shipped(2).scene, {}));
+  CHECK(io::scene_text(flat.scene, {}) == io::scene_text(shipped_home().scene, {}));
+  CHECK(io::scene_text(flat.scene, {}) != io::scene_text(shipped_home(2).scene, {}));
   CHECK(flat.scene.sensors.size() == 7);
 }
 
@@ -150,7 +152,7 @@ TEST_CASE("residents of the shipped plan live a day in all of its rooms, whateve
           "[home_plan][seconds]") {
   ScriptSpec script =
       test::shipped_script("flat_week.yaml", {"replicates=1", "sensing.tick_rate_hz=5", "sensing.response=zones"});
-  const SceneSpec scene = shipped().scene;
+  const SceneSpec scene = shipped_home().scene;
   const Model model = compile(scene, std::move(script));
   std::vector<RunResult> results;
   for (const unsigned threads : {1U, 2U})
@@ -169,7 +171,7 @@ TEST_CASE("residents of the shipped plan live a day in all of its rooms, whateve
 }
 
 TEST_CASE("check counts beds and stoves as it does seats, and says which no sensor notices", "[home_plan][seconds]") {
-  SceneSpec scene = shipped().scene;
+  SceneSpec scene = shipped_home().scene;
   const auto noticed = [](const SceneSpec& of) {
     const CheckReport report =
         check_study(compile(of, test::shipped_script("flat_week.yaml", {"sensing.response=zones"})));
