@@ -671,7 +671,7 @@ Frame hung(const PlanSensorSpec& own, const Rectangle& room, double ceiling_m) {
     from = corner_of(room, static_cast<std::uint32_t>(*own.corner) ^ 2U);  // z points down the page
     towards = centre - from;
   } else if (own.wall) {
-    const Wall wall = FloorPlan(room).walls()[static_cast<std::size_t>(*own.wall)];
+    const Wall wall = wall_of(room, *own.wall);
     towards = wall.inward();
     from = (runs_along_x(*own.wall) ? Vec2(place.x, wall.from.y) : Vec2(wall.from.x, place.y)) +
            sensor_off_wall_m * towards;

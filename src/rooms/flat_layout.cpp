@@ -347,16 +347,23 @@ Rectangle FlatPlan::clear_floor(std::size_t room) const {
            area.upper.y - (area.upper.y < bounds.upper.y ? half : 0.0)}};
 }
 
+Wall wall_of(const Rectangle& room, PlanSide side) { return FloorPlan(room).walls()[static_cast<std::size_t>(side)]; }
+
+std::optional<InnerWall> shared_wall(const Rectangle& room, PlanSide side, const Rectangle& other) {
+  const bool at_x = runs_along_x(side), at_upper = side == PlanSide::bottom || side == PlanSide::right;
+  const Vec2 &own = at_upper ? room.upper : room.lower, &facing = at_upper ? other.lower : other.upper;
+  const Vec2 low = glm::max(room.lower, other.lower), high = glm::min(room.upper, other.upper);
+  if (at_x ? own.y != facing.y || high.x <= low.x : own.x != facing.x || high.y <= low.y) return std::nullopt;
+  return InnerWall{low, high};
+}
+
 std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms) {
   std::vector<InnerWall> walls;
   for (const FlatRoom& one : rooms) {
     for (const FlatRoom& other : rooms) {
-      const Rectangle &a = one.area, &b = other.area;
-      const Vec2 low{std::max(a.lower.x, b.lower.x), std::max(a.lower.y, b.lower.y)};
-      const Vec2 high{std::min(a.upper.x, b.upper.x), std::min(a.upper.y, b.upper.y)};
-      const bool is_upright = a.upper.x == b.lower.x && high.y > low.y;
-      const bool is_across = a.upper.y == b.lower.y && high.x > low.x;
-      if ((is_upright || is_across) && one.id != other.id) walls.push_back({low, high});
+      if (one.id == other.id) continue;
+      for (const PlanSide side : {PlanSide::right, PlanSide::bottom})
+        if (const auto wall = shared_wall(one.area, side, other.area)) walls.push_back(*wall);
     }
   }
   return walls;

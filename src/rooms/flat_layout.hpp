@@ -58,6 +58,10 @@ struct FlatPlan {
   [[nodiscard]] Rectangle clear_floor(std::size_t room) const;
 };
 
+/// A room's wall on that side of the page, seen from inside.
+[[nodiscard]] Wall wall_of(const Rectangle& room, PlanSide side);
+/// What of it another room has behind it, or nothing.
+[[nodiscard]] std::optional<InnerWall> shared_wall(const Rectangle& room, PlanSide side, const Rectangle& other);
 /// Of rooms that touch, unless they are of one area.
 [[nodiscard]] std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms);
 

@@ -127,36 +127,23 @@ std::string unlike_others(std::set<std::string>& known, const std::string& given
   return name;
 }
 
-/// What of a room's wall on one side another room has behind it, or nothing.
-std::optional<InnerWall> shared(const Rectangle& room, PlanSide side, const Rectangle& other) {
-  const bool at_x = runs_along_x(side), at_upper = side == PlanSide::bottom || side == PlanSide::right;
-  const Vec2 &own = at_upper ? room.upper : room.lower, &facing = at_upper ? other.lower : other.upper;
-  if (at_x ? own.y != facing.y : own.x != facing.x) return std::nullopt;
-  const Vec2 low = glm::max(room.lower, other.lower), high = glm::min(room.upper, other.upper);
-  if (at_x ? high.x <= low.x : high.y <= low.y) return std::nullopt;
-  return at_x ? InnerWall{{low.x, own.y}, {high.x, own.y}} : InnerWall{{own.x, low.y}, {own.x, high.y}};
-}
-
-/// Pieces of that wall that no room is behind.
+/// Pieces of a room's wall that no room is behind.
 std::vector<InnerWall> outer_pieces(const std::vector<FlatRoom>& rooms, std::size_t room, PlanSide side) {
   const Rectangle& r = rooms[room].area;
   const bool at_x = runs_along_x(side);
-  const double line = side == PlanSide::bottom  ? r.upper.y
-                      : side == PlanSide::right ? r.upper.x
-                      : at_x                    ? r.lower.y
-                                                : r.lower.x;
-  const auto on_line = [&](double at) { return at_x ? Vec2(at, line) : Vec2(line, at); };
+  const Vec2 end = wall_of(r, side).from;
+  const auto on_line = [&](double at) { return at_x ? Vec2(at, end.y) : Vec2(end.x, at); };
   const auto place = [&](const Vec2& point) { return at_x ? point.x : point.y; };
   std::vector<std::pair<double, double>> behind;
   for (const FlatRoom& other : rooms)
-    if (const auto piece = shared(r, side, other.area)) behind.emplace_back(place(piece->from), place(piece->to));
+    if (const auto piece = shared_wall(r, side, other.area)) behind.emplace_back(place(piece->from), place(piece->to));
   std::ranges::sort(behind);
   behind.emplace_back(place(r.upper), place(r.upper));
   std::vector<InnerWall> pieces;
   double from = place(r.lower);
-  for (const auto& [begin, end] : behind) {
+  for (const auto& [begin, last] : behind) {
     if (begin > from) pieces.push_back({on_line(from), on_line(begin)});
-    from = end;
+    from = last;
   }
   return pieces;
 }
@@ -242,7 +229,7 @@ class Layout {
       walls = outer_pieces(flat_.rooms, *into, side);
     } else if (flat_.rooms[*door.from].id != room.id) {
       for (const PlanSide one : all_sides) {
-        const auto wall = shared(room.area, one, flat_.rooms[*door.from].area);
+        const auto wall = shared_wall(room.area, one, flat_.rooms[*door.from].area);
         if (!wall) continue;
         walls.push_back(*wall);
         side = one;
@@ -274,24 +261,17 @@ class Layout {
       faults_.error(own.where,
                     std::string(across(side)) + ": the wall between " + which + " runs along " + (at_x ? "x" : "y"));
     const std::optional<double> given = at_x ? own.x_m : own.y_m ? std::optional(0.0 - *own.y_m) : std::nullopt;
-    const double half = 0.5 * (own.width_m + flat_wall_m);
-    const auto has_room = [&](const InnerWall& wall, double middle) {
-      constexpr double rounding_m = 1e-9;
-      return middle - half >= at(wall.from) - rounding_m && middle + half <= at(wall.to) + rounding_m;
-    };
+    constexpr double rounding_m = 1e-9;
+    const double half = 0.5 * (own.width_m + flat_wall_m) - rounding_m;
     std::string told;
     for (const InnerWall& wall : walls) {
       const double middle = given.value_or(0.5 * (at(wall.from) + at(wall.to)));
       told += (told.empty() ? "" : ", ") + fixed(at_x ? at(wall.from) : -at(wall.to), 2) + " to " +
               fixed(at_x ? at(wall.to) : -at(wall.from), 2);
-      if (!has_room(wall, middle)) continue;
+      if (middle - half < at(wall.from) || middle + half > at(wall.to)) continue;
       door.middle = at_x ? Vec2(middle, wall.from.y) : Vec2(wall.from.x, middle);
-      // Into the room.
-      door.direction = side == PlanSide::bottom ? Vec2(0, -1)
-                       : side == PlanSide::top  ? Vec2(0, 1)
-                       : side == PlanSide::left ? Vec2(1, 0)
-                                                : Vec2(-1, 0);
       const Rectangle& r = flat_.rooms[door.into].area;
+      door.direction = wall_of(r, side).inward();
       const bool is_low_nearer = middle - at(r.lower) < at(r.upper) - middle;
       // To the right of who goes along +z or -x coordinates fall.
       const bool is_low_left = side == PlanSide::bottom || side == PlanSide::left;
@@ -353,7 +333,6 @@ HomePlanSpec read_home_plan(const std::filesystem::path& file, std::span<const s
         sensor.id = unlike_others(sensors, sensor.id, room_sensor_name(room.id), sensor.where, faults);
   }
   faults.throw_if_errors();
-  static_cast<void>(plan_of(plan));
   return plan;
 }
 
