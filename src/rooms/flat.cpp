@@ -755,10 +755,8 @@ class Shell {
     }
     constexpr double w = flat_wall_m, half = 0.5 * flat_wall_m;
     add_box("ceiling", {b.lower - Vec2(w), b.upper + Vec2(w)}, height_m_, height_m_ + w);
-    add_wall({{{b.lower.x - w, b.upper.y}, {b.upper.x + w, b.upper.y + w}}, true});
-    add_wall({{{b.lower.x - w, b.lower.y - w}, {b.upper.x + w, b.lower.y}}, true});
-    add_wall({{{b.lower.x - w, b.lower.y}, {b.lower.x, b.upper.y}}, false});
-    add_wall({{{b.upper.x, b.lower.y}, {b.upper.x + w, b.upper.y}}, false});
+    for (const PlanSide side : {PlanSide::bottom, PlanSide::top, PlanSide::left, PlanSide::right})
+      add_outer_walls(side, all);
     for (const InnerWall& wall : plan_.inner_walls) {
       const bool is_along_x = wall.from.y == wall.to.y;
       const Vec2 thick = is_along_x ? Vec2(0.0, half) : Vec2(half, 0.0);
@@ -796,6 +794,28 @@ class Shell {
   void add_box(const std::string& name, const Rectangle& area, double from_y, double to_y) {
     const std::array parts{BoxPart{area, from_y, to_y}};
     scene_.meshes.push_back(boxes(name, {}, parts));
+  }
+
+  /// Where the floor reaches to that side of the bounds: who enters beside it comes through no wall.
+  void add_outer_walls(PlanSide side, const std::vector<Rectangle>& floors) {
+    constexpr double w = flat_wall_m, touch_m = 1e-6;
+    const bool at_x = runs_along_x(side);
+    const Vec2 edge = wall_of(plan_.bounds, side).from;
+    const double out = side == PlanSide::bottom || side == PlanSide::right ? w : -w;
+    std::vector<std::pair<double, double>> runs;  // from, to
+    for (const Rectangle& r : floors) {
+      const Vec2 own = wall_of(r, side).from;
+      if (at_x && own.y == edge.y) runs.emplace_back(r.lower.x, r.upper.x);
+      if (!at_x && own.x == edge.x) runs.emplace_back(r.lower.y, r.upper.y);
+    }
+    std::ranges::sort(runs);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      auto [from, to] = runs[i];
+      while (i + 1 < runs.size() && runs[i + 1].first < to + touch_m) to = runs[++i].second;
+      const Vec2 low = at_x ? Vec2(from - w, edge.y) : Vec2(edge.x, from);
+      const Vec2 high = at_x ? Vec2(to + w, edge.y + out) : Vec2(edge.x + out, to);
+      add_wall({{glm::min(low, high), glm::max(low, high)}, at_x});
+    }
   }
 
   /// In pieces beside and above its doorways.

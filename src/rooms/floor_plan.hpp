@@ -131,7 +131,8 @@ class Failures {
  public:
   void add(const std::string& reason) { ++reasons_[reason]; }
   /// "room 3: none of 300 rooms drawn ..."; what: "room".
-  [[noreturn]] void give_up(const std::string& what, int number, const std::string& drawn_from, const Where& where) const;
+  [[noreturn]] void give_up(const std::string& what, int number, const std::string& drawn_from,
+                            const Where& where) const;
 
  private:
   std::map<std::string, int> reasons_;

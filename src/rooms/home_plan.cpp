@@ -248,8 +248,15 @@ class Layout {
       door.leaf = leaf == PlanLeaf::open                            ? DoorState::open
                   : leaf == PlanLeaf::shut || (!leaf && !door.from) ? DoorState::shut
                                                                     : DoorState::habit;
-    for (const Doorway& other : flat_.doorways)
-      if (overlap(gap_of(door), gap_of(other))) faults_.error(own.where, "it overlaps door '" + other.id + "'");
+    for (const Doorway& other : flat_.doorways) {
+      if (overlap(gap_of(door), gap_of(other))) {
+        faults_.error(own.where, "it overlaps door '" + other.id + "'");
+      } else if (is_before(door, other)) {
+        faults_.error(own.where, "its open leaf is in the way of door '" + other.id + "' (another `hinge`?)");
+      } else if (is_before(other, door)) {
+        faults_.error(own.where, "the open leaf of door '" + other.id + "' is in its way (another `hinge`?)");
+      }
+    }
     flat_.doorways.push_back(door);
   }
 
@@ -286,6 +293,20 @@ class Layout {
     const Vec2 half = 0.5 * (door.width_m * Vec2(std::abs(door.direction.y), std::abs(door.direction.x)) +
                              flat_wall_m * glm::abs(door.direction));
     return {door.middle - half, door.middle + half};
+  }
+
+  /// Whether the first one's leaf, open, leaves nobody a way through the other.
+  static bool is_before(const Doorway& one, const Doorway& other) {
+    constexpr double before_m = 0.3, way_m = 0.6;  // assumed: 0.2-0.4, 0.5-0.7
+    if (!one.leaf) return false;
+    const Vec2 to_right{-one.direction.y, one.direction.x};
+    const Vec2 post = one.middle + (one.hinge == DoorHinge::right ? 0.5 : -0.5) * one.width_m * to_right;
+    const Vec2 end = post + one.width_m * one.direction, thick(0.02);
+    const Rectangle leaf{glm::min(post, end) - thick, glm::max(post, end) + thick}, gap = gap_of(other);
+    const Vec2 deep = before_m * glm::abs(other.direction);
+    const Vec2 beside = glm::max(leaf.lower - gap.lower, gap.upper - leaf.upper);
+    return overlap(leaf, {gap.lower - deep, gap.upper + deep}) &&
+           (other.direction.x == 0.0 ? beside.x : beside.y) < way_m;
   }
 
   /// A way leads from outside into every room.

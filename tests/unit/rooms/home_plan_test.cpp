@@ -77,6 +77,7 @@ TEST_CASE("what a plan can't have is told with its place", "[home_plan]") {
            {"x_m: [0, 4]", "x_m: [4, 0]", "the second number is less than the first"},
            {"y_m: 2}\n", "y_m: 0.5}\n", "a door of 0.90 m doesn't fit there"},
            {"y_m: 2}\n", "x_m: 4}\n", "x_m: the wall between 'living' and 'bath' runs along y"},
+           {"y_m: 2}\n", "y_m: 2}\n  - {into: bath, wall: bottom, x_m: 4.6}\n", "leaf is in the way of door 'bath' ("},
            {"  - {from: living, into: bath, y_m: 2}\n", "", "no door leads to 'bath'"},
            {"wall: left, y_m: 2", "wall: left, y_m: 0.5", "plan.yaml:3:75: error: sofa isn't inside of its room"},
            {"wall: left, y_m: 2", "wall: bottom, x_m: 2", "sofa is in the way of door 'front'"},
@@ -95,6 +96,7 @@ TEST_CASE("a plan that nobody can walk through is refused, and names what isn't 
   };
   CHECK_THAT(plan_fault(shelf("x_m: 5.27, width_m: 2.4")), contains("toilet"));  // from wall to wall
   CHECK(plan_fault(shelf("x_m: 4.67, width_m: 1.2")).empty());
+  CHECK(plan_fault(two_rooms_with("y_m: 2}\n", "y_m: 2}\n  - {into: bath, wall: bottom, x_m: 5.5}\n")).empty());
 }
 
 TEST_CASE("things are where the page has them", "[home_plan]") {
