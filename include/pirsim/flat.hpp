@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,89 @@ struct DrawnFlat {
 /// and place can be reached by the largest body that a schedule draws, and every sensor sees somebody; a flat that
 /// fails is drawn again from the next sub-stream. Throws as draw_room() does.
 [[nodiscard]] DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number,
+                                  const io::SceneOptions& options = {});
+
+// A flat that somebody has, as it is drawn on squared paper: x to the right, y up the page, z = -y.
+
+enum class PlanSide { bottom, right, top, left };  ///< of a room, on the page
+enum class PlanCorner { bottom_left, bottom_right, top_left, top_right };
+enum class PlanLeaf { none, open, shut, habit };
+enum class PieceKind {
+  bed,
+  sofa,
+  table,
+  kitchen,  ///< a counter with stove and sink, and a fridge at its end
+  counter,
+  stove,
+  sink,
+  fridge,
+  shower,
+  toilet,
+  washbasin,
+  wardrobe,
+  desk,
+  shelf,
+  television
+};
+
+/// What has no place is put where it fits.
+struct PlanPieceSpec {
+  PieceKind kind = PieceKind::bed;
+  std::optional<PlanSide> wall;    ///< to which its back is
+  std::optional<double> x_m, y_m;  ///< of the middle of its back; of a table's middle
+  std::optional<double> width_m;   ///< along its back
+  std::optional<int> places;       ///< of a bed, a sofa, a table
+  Where where;                     ///< for messages
+};
+
+/// In a corner, on a wall, or else on the ceiling.
+struct PlanSensorSpec {
+  std::string id;
+  std::string model;  ///< empty: the usual one for where it hangs
+  std::optional<PlanCorner> corner;
+  std::optional<PlanSide> wall;
+  std::optional<double> x_m, y_m;  ///< none: the middle of the wall or of the ceiling
+  double height_m = 2.2;
+  double tilt_deg = 20.0;
+  double turned_deg = 0.0;
+  Where where;  ///< for messages
+};
+
+struct PlanRoomSpec {
+  std::string id;
+  FlatRoomKind kind = FlatRoomKind::living_room;
+  Range x_m, y_m;    ///< up to the middle of inner walls, and to the face of outer ones
+  std::string area;  ///< rooms of one have no wall between them; empty: its id
+  std::optional<std::vector<PlanPieceSpec>> furniture;  ///< none: what is usual in such a room
+  std::optional<std::vector<PlanSensorSpec>> sensors;   ///< none: one in a corner
+  Where where;                                          ///< for messages
+};
+
+struct PlanDoorSpec {
+  std::string id;
+  std::string from, into;  ///< ids of rooms; from: empty: outside
+  std::optional<PlanSide> wall;
+  std::optional<double> x_m, y_m;
+  double width_m = 0.9;
+  std::optional<PlanLeaf> leaf;
+  std::optional<DoorHinge> hinge;
+  Where where;  ///< for messages
+};
+
+struct HomePlanSpec {
+  std::string name;
+  double height_m = 2.5;
+  std::vector<PlanRoomSpec> rooms;
+  std::vector<PlanDoorSpec> doors;
+  Where where;  ///< for messages
+};
+
+/// Throws Error: io (no file), input (content), usage (an override).
+[[nodiscard]] HomePlanSpec read_home_plan(const std::filesystem::path& file,
+                                          std::span<const std::string> overrides = {});
+/// What the plan leaves open is drawn as in draw_flat(). Throws Error(input) for what can't be: rooms that overlap, a
+/// door without a wall, furniture that isn't in its room; Error(infeasible) where the largest body doesn't get to.
+[[nodiscard]] DrawnFlat draw_flat(const HomePlanSpec& plan, std::uint64_t seed, int number,
                                   const io::SceneOptions& options = {});
 
 }  // namespace pirsim::dataset

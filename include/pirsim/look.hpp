@@ -187,6 +187,8 @@ struct PlacementOptions {
   std::filesystem::path scene_file{};  ///< beside which models of sensors are looked for
   io::SceneOptions scenes{};
   std::function<void()> set_done{};  ///< after each set of the study, and each set or place that the search has tried
+  /// Names of models: besides the sets, one sensor in each area is looked for, in its corners and below its ceiling.
+  std::vector<std::string> each_area{};
 };
 
 /// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input)

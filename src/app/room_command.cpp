@@ -19,6 +19,7 @@ namespace {
 struct DrawOptions {
   enum class What { room, home } what = What::room;
   std::filesystem::path recipe;  ///< or settings
+  std::filesystem::path plan;    ///< or that
   std::filesystem::path output;
   std::vector<std::string> settings;            ///< "width_m=6"
   std::map<std::string, std::string> as_typed;  ///< "--set width_m=6": "--width 6"
@@ -117,6 +118,12 @@ void write(const DrawOptions& options, const Drawn& drawn) {
 void draw(const DrawOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing: room.gltf or room.glb");
   const io::SceneOptions scenes = scene_options(options.inputs);
+  if (!options.plan.empty()) {
+    if (!options.recipe.empty() || !options.as_typed.empty())
+      throw Error(ErrorCode::usage, "--plan says what the flat is like: no recipe, and no other options but --set");
+    const auto plan = dataset::read_home_plan(found(io::DataKind::recipes, options.plan), options.settings);
+    return write(options, dataset::draw_flat(plan, options.seed.value_or(1), options.number, scenes));
+  }
   if (options.recipe.empty()) {
     const std::uint64_t seed = options.seed.value_or(1);
     if (options.what == DrawOptions::What::room) {
@@ -180,6 +187,9 @@ CLI::Option* offer_drawing(CLI::App& command) {
   of_home("--sensors-at", "sensors_at", "WORD", "room or doorway: a sensor in each (default: room)");
   of_home("--mount", "mount", "WORD", "corner or ceiling, of sensors in rooms (default: corner)");
   of_home("--model", "model", "NAME", "of sensors, or [NAME,...]: one is drawn for each");
+  offer_input_file(command, "--plan", options.plan, "a flat that somebody has: docs/formats/plan.md")
+      ->group("Flats, with --home")
+      ->needs(home);
   setting("Options", "--height", "height_m", "M", "of the ceiling");
   offer_input_file(command, "RECIPE", options.recipe, "take the ranges of its rooms: docs/formats/dataset.md");
   command
@@ -211,6 +221,7 @@ constexpr const char* room_examples = R"(
   pirsim room --set "sensors=[{mount: corner, count: 2, model: EKMC1603111}]" -o room.gltf
   pirsim room --home -o flat.gltf                                    one to four rooms, one or two residents
   pirsim room --home --rooms [1,2] --size [35,50] --mount ceiling --number 3 -o flat.gltf
+  pirsim room --home --plan my_flat.yaml -o flat.gltf                 a flat that somebody has
   pirsim room recipe.yaml --number 3 -o room.gltf                    the third room of a dataset
 )";
 

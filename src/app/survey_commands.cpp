@@ -135,19 +135,22 @@ void add_walktest_command(CLI::App& app) {
 namespace {
 
 struct PlacementsOptions {
-  std::filesystem::path scene;   ///< .gltf, .glb
-  std::filesystem::path report;  ///< .html
+  std::filesystem::path scene;         ///< .gltf, .glb
+  std::filesystem::path report;        ///< .html
+  std::vector<std::string> each_area;  ///< models
   unsigned threads = 0;
 };
 
-PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs, unsigned threads,
-                        const StopRequest& stop) {
+PlacementReport compare(const SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs,
+                        const PlacementsOptions& asked, const StopRequest& stop) {
   auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
   if (spec.search && spec.by == PlacementAim::seats) n_tried += static_cast<std::uint64_t>(spec.search->n_sensors);
   // All places of a search by false-offs are done at once: how many sets are done says nothing of how long it takes.
-  const std::uint64_t total = spec.by == PlacementAim::false_off ? 0 : spec.sets.size() + n_tried;
+  const bool is_open = spec.by == PlacementAim::false_off || !asked.each_area.empty();
+  const std::uint64_t total = is_open ? 0 : spec.sets.size() + n_tried;
   Progress progress({"scoring sets of sensors", total, "sets"}, inputs.verbosity);
-  PlacementOptions options{threads, found(io::DataKind::rooms, inputs.scene), scene_options(inputs)};
+  PlacementOptions options{asked.threads, found(io::DataKind::rooms, inputs.scene), scene_options(inputs)};
+  options.each_area = asked.each_area;
   options.set_done = [&] {
     progress.finished();
     stop.throw_if_made();
@@ -164,7 +167,7 @@ void placements(const Inputs& inputs, const PlacementsOptions& options) {
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
   const StopRequest stop;
-  const PlacementReport report = compare(scene, spec, inputs, options.threads, stop);
+  const PlacementReport report = compare(scene, spec, inputs, options, stop);
   tell(report.warnings, inputs.verbosity);
   if (!options.scene.empty()) io::write_scene(options.scene, report.best);
   if (report_file) {
@@ -184,12 +187,17 @@ void add_placements_command(CLI::App& app) {
   pirsim placements --scene room.gltf --script placements.yaml
   pirsim placements --scene room.gltf --script placements.yaml --set by=seats -o better.gltf --report sets.html
   pirsim placements --scene room.gltf --script placements.yaml --set search.evaluations=2000
+  pirsim placements --scene flat.gltf --script home_placements.yaml --each-area SML001 RTCGQ11LM -o better.gltf
   pirsim placements --scene room.gltf --script light.yaml --set light.delay_min=5 --report sets.html
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<PlacementsOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
+  command
+      .add_option("--each-area", options->each_area,
+                  "look for one sensor in each area, of these models: in its corners and below its ceiling")
+      ->option_text("MODEL ...");
   offer_output(command, output_names, options->scene, "the scene with the best set's sensors, .gltf or .glb",
                {".gltf", ".glb"});
   offer_map_report(command, options->report);

@@ -4,12 +4,19 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <ranges>
+#include <set>
 #include <span>
 #include <vector>
 
+#include "model/core/text.hpp"
 #include "rooms/flat_layout.hpp"
 #include "rooms/floor_plan.hpp"
+#include "rooms/recipe_fields.hpp"
+#include "rooms/suggested_floor.hpp"
 
 // The floor of one room while it is furnished: what stands on it, and what must stay free to get there.
 
@@ -31,11 +38,14 @@ class RoomFloor {
   void put(const Spot& spot, const Piece& piece);
   void keep_free(const Rectangle& rectangle) { kept_.push_back(rectangle); }
 
-  /// Its back to a wall, often in a corner: half_m from its middle to its sides. None after some attempts. Puts it
-  /// there.
-  [[nodiscard]] std::optional<Spot> put_at_wall(const Piece& piece, double half_m, Stream& stream);
+  /// Its back to a wall, any or this one, often in a corner: half_m from its middle to its sides. None after some
+  /// attempts. Puts it there.
+  [[nodiscard]] std::optional<Spot> put_at_wall(const Piece& piece, double half_m, Stream& stream,
+                                                std::optional<PlanSide> side = {});
   /// Anywhere, turned by quarters.
   [[nodiscard]] std::optional<Spot> put_anywhere(const Piece& piece, Stream& stream);
+  [[nodiscard]] const Wall& wall(PlanSide side) const { return walls()[static_cast<std::size_t>(side)]; }
+  [[nodiscard]] bool contains(const Rectangle& rectangle) const noexcept { return plan_.contains(rectangle); }
 
  private:
   FloorPlan plan_;  ///< occupied by solids
@@ -59,9 +69,10 @@ void RoomFloor::put(const Spot& spot, const Piece& piece) {
   kept_.push_back(spot * piece.kept);
 }
 
-std::optional<Spot> RoomFloor::put_at_wall(const Piece& piece, double half_m, Stream& stream) {
+std::optional<Spot> RoomFloor::put_at_wall(const Piece& piece, double half_m, Stream& stream,
+                                           std::optional<PlanSide> side) {
   for (int k = 0; k < most_spots; ++k) {
-    const Wall& wall = one_of(plan_.walls(), stream);
+    const Wall& wall = side ? this->wall(*side) : one_of(plan_.walls(), stream);
     const double room = wall.length_m() - 2.0 * half_m;
     const std::uint32_t where = stream.index(4);  // a quarter each in the corners
     const double along = draw_length({0.0, std::max(0.0, room)}, stream);
@@ -90,19 +101,21 @@ namespace {
 
 using Kind = FlatRoomKind;
 
+std::string fixed_m(double metres) { return fixed(metres, 2); }
+
 class FlatFurnisher {
  public:
   FlatFurnisher(const FlatSpec& spec, int residents, FlatPlan plan, Stream& stream)
       : spec_(spec), plan_(std::move(plan)), stream_(stream) {
     flat_.residents = residents;
-    flat_.width_m = plan_.bounds.upper.x;
-    flat_.depth_m = -plan_.bounds.lower.y;
+    flat_.width_m = plan_.bounds.upper.x - plan_.bounds.lower.x;
+    flat_.depth_m = plan_.bounds.upper.y - plan_.bounds.lower.y;
     flat_.height_m = draw_length(spec.height_m, stream_);
     for (std::size_t i = 0; i < plan_.rooms.size(); ++i) floors_.emplace_back(plan_.clear_floor(i));
-    for (const Doorway& door : plan_.doorways) keep_doorway_free(door);
   }
 
   std::variant<FurnishedFlat, NoPlace> furnish() {
+    for (const Doorway& door : plan_.doorways) keep_doorway_free(door, kept_free_at_door_m);
     build_shell(plan_, flat_.height_m, flat_.scene);
     add_beds();
     for (std::size_t i = 0; i < plan_.rooms.size() && lacking_.empty(); ++i) furnish_room(i);
@@ -112,15 +125,43 @@ class FlatFurnisher {
     } else {
       hang_in_rooms(spec_, plan_, flat_.height_m, stream_, flat_.scene);
     }
+    return result();
+  }
+
+  /// As somebody has it. What has a place comes first, so that the rest is put around it.
+  std::variant<FurnishedFlat, NoPlace> furnish(const HomePlanSpec& own, Diagnostics& faults) {
+    faults_ = &faults;
+    for (const Doorway& door : plan_.doorways)
+      keep_doorway_free(door, door.leaf ? std::max(door.width_m, kept_by_passers_m) : kept_by_passers_m);
+    keep_open_sides_free();
+    build_shell(plan_, flat_.height_m, flat_.scene);
+    for (const bool has_place : {true, false}) {
+      for (std::size_t i = 0; i < own.rooms.size(); ++i) {
+        for (const PlanPieceSpec& piece : own.rooms[i].furniture.value_or(std::vector<PlanPieceSpec>{}))
+          if (is_placed(piece) == has_place) add_piece(floors_[i], piece);
+      }
+    }
+    asked_ = nullptr;
+    for (std::size_t i = 0; i < own.rooms.size(); ++i) {
+      if (own.rooms[i].furniture) continue;
+      if (own.rooms[i].kind == Kind::bedroom) add_bed(floors_[i], true, 2);
+      furnish_room(i);
+    }
+    hang_sensors(own, plan_, spec_, stream_, flat_);
+    return result();
+  }
+
+ private:
+  std::variant<FurnishedFlat, NoPlace> result() {
     if (!lacking_.empty()) return NoPlace{lacking_};
     flat_.rooms = plan_.rooms;
     return FurnishedFlat{std::move(flat_), std::move(demands_)};
   }
 
- private:
   // Sizes are `assumed`: common furniture, as in the shipped flat; the ranges that were looked at stand behind.
   static constexpr double off_wall_m = 0.02;
-  static constexpr double kept_free_at_door_m = 1.0;                 // 0.9-1.2, on both sides
+  static constexpr double kept_free_at_door_m = 1.0;  // 0.9-1.2, on both sides
+  static constexpr double kept_by_passers_m = 0.6;    // 0.5-0.8, on both sides: what somebody has there may be so near
   static constexpr double bed_length_m = 2.05, bed_height_m = 0.48;  // 2.0-2.1, 0.45-0.5
   static constexpr double pelvis_from_wall_m = 1.03;  // of who lies: the head of the largest person has room
   static constexpr double beside_bed_m = 0.7;         // 0.6-0.8: to get in
@@ -132,6 +173,8 @@ class FlatFurnisher {
   static constexpr double knees_m = 0.45, back_m = 0.2;  // of sitters, from the pelvis: no leaf turns there
   static constexpr double desk_depth_m = 0.7;            // 0.6-0.8
 
+  static constexpr Rectangle television{{-0.7, -0.4}, {0.7, -off_wall_m}};
+
   static constexpr std::size_t least_places = 8;  // half a square metre: what a sensor must see at least
 
   enum class Wanted { always, if_it_fits };
@@ -140,18 +183,130 @@ class FlatFurnisher {
     if (lacking_.empty()) lacking_ = reason;
   }
 
-  void keep_doorway_free(const Doorway& door) {
-    const Vec2 across{0.5 * doorway_m * door.direction.y, 0.5 * doorway_m * door.direction.x};
+  /// Of what has no leaf, so much as a usual door is wide.
+  void keep_doorway_free(const Doorway& door, double depth_m) {
+    const double half = 0.5 * (door.leaf ? door.width_m : std::min(door.width_m, doorway_m));
+    const Vec2 across{half * door.direction.y, half * door.direction.x};
     const auto keep = [&](std::size_t room, const Vec2& towards) {
-      const Vec2 far = door.middle + kept_free_at_door_m * towards;
-      floors_[room].keep_free({glm::min(glm::min(door.middle + across, door.middle - across), far - glm::abs(across)),
-                               glm::max(glm::max(door.middle + across, door.middle - across), far + glm::abs(across))});
+      const Vec2 far = door.middle + depth_m * towards;
+      const Rectangle way{glm::min(glm::min(door.middle + across, door.middle - across), far - glm::abs(across)),
+                          glm::max(glm::max(door.middle + across, door.middle - across), far + glm::abs(across))};
+      floors_[room].keep_free(way);
+      taken_.push_back({way, "is in the way of door '" + door.id + "'"});
     };
     keep(door.into, door.direction);
     if (door.from) keep(*door.from, -door.direction);
   }
 
+  /// Where rooms of one area meet, nothing has its back.
+  void keep_open_sides_free() {
+    constexpr double near_m = 0.1;
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i) {
+      for (std::size_t k = 0; k < plan_.rooms.size(); ++k) {
+        const Rectangle& other = plan_.rooms[k].area;
+        if (i != k && plan_.rooms[k].id == plan_.rooms[i].id)
+          floors_[i].keep_free({other.lower - Vec2(near_m), other.upper + Vec2(near_m)});
+      }
+    }
+  }
+
   // -- things --------------------------------------------------------------------------------------------------------
+
+  static bool is_placed(const PlanPieceSpec& piece) {
+    if (piece.kind == PieceKind::table) return piece.x_m.has_value();
+    return piece.wall && (runs_along_x(*piece.wall) ? piece.x_m : piece.y_m);
+  }
+
+  /// Its back to a wall.
+  std::optional<Spot> put_at_wall(RoomFloor& floor, const Piece& piece, double half_m) {
+    if (asked_ == nullptr) return floor.put_at_wall(piece, half_m, stream_);
+    return is_placed(*asked_) ? put_as_asked(floor, piece) : floor.put_at_wall(piece, half_m, stream_, asked_->wall);
+  }
+  std::optional<Spot> put_anywhere(RoomFloor& floor, const Piece& piece) {
+    return asked_ != nullptr && is_placed(*asked_) ? put_as_asked(floor, piece) : floor.put_anywhere(piece, stream_);
+  }
+
+  /// Wherever that is, with a fault if it can't be there.
+  Spot put_as_asked(RoomFloor& floor, const Piece& piece) {
+    Spot spot = floor.wall(asked_->wall.value_or(PlanSide::bottom)).facing_room(0.0);
+    if (asked_->x_m) spot.origin.x = *asked_->x_m;
+    if (asked_->y_m) spot.origin.y = 0.0 - *asked_->y_m;
+    const Rectangle solid = spot * piece.solid;
+    const std::string name = word_of(asked_->kind);
+    std::string fault;
+    if (!floor.contains(solid)) {
+      fault = "isn't inside of its room: it takes x from " + fixed_m(solid.lower.x) + " to " + fixed_m(solid.upper.x) +
+              " m and y from " + fixed_m(-solid.upper.y) + " to " + fixed_m(-solid.lower.y) + " m";
+    }
+    for (const Taken& other : taken_)
+      if (fault.empty() && overlap(solid, other.area)) fault = other.fault;
+    if (!fault.empty()) faults_->error(asked_->where, name + ' ' + fault);
+    taken_.push_back({solid, "is where a " + name + " is"});
+    floor.put(spot, piece);
+    return spot;
+  }
+
+  /// Of what a drawn flat draws a plan takes the middle.
+  double width(const Range& usual) {
+    if (asked_ == nullptr) return draw_length(usual, stream_);
+    return asked_->width_m.value_or(0.5 * (usual.least + usual.most));
+  }
+  [[nodiscard]] int places(int usual) const { return asked_ != nullptr ? asked_->places.value_or(usual) : usual; }
+
+  /// "sofa", then "sofa_2".
+  std::string named(const std::string& kind) {
+    const int which = ++numbers_[kind];
+    return which == 1 ? kind : kind + '_' + std::to_string(which);
+  }
+
+  void add_piece(RoomFloor& floor, const PlanPieceSpec& piece) {
+    asked_ = &piece;
+    switch (piece.kind) {
+      case PieceKind::bed:
+        return add_bed(floor, piece.width_m ? *piece.width_m > 1.2 : places(1) == 2, places(1));
+      case PieceKind::sofa:
+        return add_sofa(floor);
+      case PieceKind::table:
+        return add_table(floor);
+      case PieceKind::kitchen:
+        return add_kitchen(floor);
+      case PieceKind::counter:
+        return add_block(floor, "counter", 0.9, {});
+      case PieceKind::stove:
+        return add_block(floor, "stove", 0.9, {"cook"});
+      case PieceKind::sink:
+        return add_block(floor, "sink", 0.9, {"chores", "cook"});
+      case PieceKind::fridge:
+        return add_block(floor, "fridge", 1.8, {});
+      case PieceKind::shower:
+        return add_shower(floor);
+      case PieceKind::toilet:
+        return add_toilet(floor);
+      case PieceKind::washbasin:
+        return add_washbasin(floor);
+      case PieceKind::wardrobe:
+        return add_wardrobe(floor);
+      case PieceKind::desk:
+        return add_desk(floor, Wanted::always);
+      case PieceKind::shelf:
+        return add_shelf(floor);
+      case PieceKind::television:
+        if (const auto spot = put_at_wall(floor, {television, television}, 0.7)) return build_television(*spot);
+        return fail("there was no place for a television");
+    }
+  }
+
+  /// As deep as a kitchen counter; with uses there is a place to stand before it.
+  void add_block(RoomFloor& floor, const std::string& kind, double height_m, std::vector<std::string> uses) {
+    const double half = 0.5 * width({0.6, 0.6}), front = -off_wall_m - counter_depth_m;
+    const Rectangle solid{{-half, front}, {half, -off_wall_m}};
+    const auto spot = put_at_wall(floor, {solid, {{-half, front - 0.9}, {half, -off_wall_m}}}, half);
+    if (!spot) return fail("there was no place for a " + kind);
+    const std::string id = named(kind);
+    add(id, *spot, {{solid, 0.0, height_m}});
+    if (!uses.empty())
+      add_place(id, PlacePosture::stand, *spot, {0.0, front - stand_from_counter_m}, 2, 0.0, std::move(uses));
+  }
 
   void add(const std::string& name, const Spot& spot, std::span<const BoxPart> parts) {
     flat_.scene.meshes.push_back(boxes(name, spot, parts));
@@ -191,7 +346,7 @@ class FlatFurnisher {
   }
 
   void add_bed(RoomFloor& floor, bool is_wide, int sleepers) {
-    const double half = 0.5 * draw_length(is_wide ? Range{1.4, 1.8} : Range{0.9, 1.0}, stream_);
+    const double half = 0.5 * width(is_wide ? Range{1.4, 1.8} : Range{0.9, 1.0});
     const double end = -off_wall_m - bed_length_m;
     const Rectangle solid{{-half, end}, {half, -off_wall_m}};
     // One alone gets in at the right: x is mirrored by turns.
@@ -201,7 +356,7 @@ class FlatFurnisher {
     // Two get to both sides round the foot.
     const double foot = sleepers == 2 ? end - beside_bed_m : end;
     const Piece piece{solid, {{left, foot}, {right, -off_wall_m}}};
-    const auto spot = floor.put_at_wall(piece, half + off_wall_m, stream_);
+    const auto spot = put_at_wall(floor, piece, half + off_wall_m);
     if (!spot) return fail("there was no place for a bed");
     const std::string number = std::to_string(++beds_);
     add("bed " + number, *spot, {{solid, 0.0, bed_height_m}});
@@ -246,19 +401,19 @@ class FlatFurnisher {
 
   /// Seats side by side, and a television opposite where there is room for it.
   void add_sofa(RoomFloor& floor) {
-    const int seats = 2 + static_cast<int>(stream_.index(2));
+    const int seats = places(2 + static_cast<int>(stream_.index(2)));
     const double half = 0.5 * (0.8 * seats + 0.3);
     const Rectangle solid{{-half, -sofa_depth_m}, {half, -off_wall_m}};
     const Rectangle with_sitters{{-half, -0.55 - knees_m}, {half, -off_wall_m}};
-    const auto spot =
-        floor.put_at_wall({with_sitters, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half, stream_);
+    const auto spot = put_at_wall(floor, {with_sitters, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half);
     if (!spot) return fail("there was no place for a sofa");
-    add("sofa", *spot, {{solid, 0.0, sofa_height_m}});
-    add("sofa back", *spot, {{{{-half, -off_wall_m - 0.2}, {half, -off_wall_m}}, sofa_height_m, 0.85}});
+    const std::string id = named("sofa");
+    add(id, *spot, {{solid, 0.0, sofa_height_m}});
+    add(id + " back", *spot, {{{{-half, -off_wall_m - 0.2}, {half, -off_wall_m}}, sofa_height_m, 0.85}});
     for (int k = 0; k < seats; ++k)
-      add_seat("sofa_" + std::to_string(k + 1), *spot, {0.8 * (k + 0.5 - 0.5 * seats), -0.55}, 0,
+      add_seat(id + '_' + std::to_string(k + 1), *spot, {0.8 * (k + 0.5 - 0.5 * seats), -0.55}, 0,
                sofa_height_m + pelvis_above_seat_m, {"tv", "rest", "read"});
-    add_television(floor, *spot);
+    if (asked_ == nullptr) add_television(floor, *spot);
   }
 
   void add_television(RoomFloor& floor, const Spot& sofa) {
@@ -266,83 +421,100 @@ class FlatFurnisher {
     const Vec2 straight = sofa * Vec2(0.0, -1.0) - sofa.origin;
     const double far = straight.x != 0.0 ? b.upper.x - b.lower.x : b.upper.y - b.lower.y;
     const Spot opposite{sofa.origin + far * straight, sofa.quarters + 2};
-    const Piece piece{{{-0.7, -0.4}, {0.7, -off_wall_m}}, {{-0.7, -0.4}, {0.7, -off_wall_m}}};
-    if (!floor.fits(opposite, piece)) return;
-    floor.put(opposite, piece);
-    add("television", opposite, {{piece.solid, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
+    if (!floor.fits(opposite, {television, television})) return;
+    floor.put(opposite, {television, television});
+    build_television(opposite);
+  }
+  void build_television(const Spot& spot) {
+    add(named("television"), spot, {{television, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
   }
 
   /// Chairs for the residents and a guest, two at least, on its long sides.
   void add_table(RoomFloor& floor) {
-    const int across = std::max(1, (flat_.residents + 2) / 2);
+    const int across = std::max(1, places(flat_.residents + 2) / 2);
     const double half = 0.5 * (chair_spacing_m * across + 0.1), deep = 0.5 * table_depth_m;
     const Rectangle solid{{-half, -deep}, {half, deep}};
     const double sitters = deep + chair_from_table_m + back_m;
-    const auto spot = floor.put_anywhere(
-        {{{-half, -sitters}, {half, sitters}}, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}}, stream_);
+    const auto spot = put_anywhere(
+        floor, {{{-half, -sitters}, {half, sitters}}, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}});
     if (!spot) return fail("there was no place for a table");
     std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
     for (const double x : {-half + 0.08, half - 0.08})
       parts.push_back({{{x - 0.03, -0.03}, {x + 0.03, 0.03}}, 0.0, 0.71});
-    add("table", *spot, parts);
+    const std::string id = named("table");
+    add(id, *spot, parts);
     for (int k = 0; k < 2 * across; ++k) {
       const double x = (k / 2 + 0.5 - 0.5 * across) * chair_spacing_m, side = k % 2 == 0 ? 1.0 : -1.0;
-      add_seat("table_" + std::to_string(k + 1), *spot, {x, side * (deep + chair_from_table_m)}, k % 2 == 0 ? 0 : 2,
+      add_seat(id + '_' + std::to_string(k + 1), *spot, {x, side * (deep + chair_from_table_m)}, k % 2 == 0 ? 0 : 2,
                hip_height_m, {"eat", "play", "work"});
     }
   }
 
   /// A counter with sink, stove and, at one end, a fridge.
   void add_kitchen(RoomFloor& floor) {
-    const double half = 0.5 * draw_length({2.4, 3.2}, stream_), front = -off_wall_m - counter_depth_m;
+    const double half = 0.5 * width({2.4, 3.2}), front = -off_wall_m - counter_depth_m;
     const Rectangle solid{{-half, front}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({solid, {{-half, front - 0.9}, {half, -off_wall_m}}}, half, stream_);
+    const auto spot = put_at_wall(floor, {solid, {{-half, front - 0.9}, {half, -off_wall_m}}}, half);
     if (!spot) return fail("there was no place for a kitchen counter");
     const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
     const auto part = [&](double a, double b) {
       return Rectangle{{std::min(side * a, side * b), front}, {std::max(side * a, side * b), -off_wall_m}};
     };
-    add("counter", *spot, {{part(-half, half - 0.6), 0.0, 0.9}});
-    add("fridge", *spot, {{part(half - 0.6, half), 0.0, 1.8}});
+    add(named("counter"), *spot, {{part(-half, half - 0.6), 0.0, 0.9}});
+    add(named("fridge"), *spot, {{part(half - 0.6, half), 0.0, 1.8}});
     const double length = 2.0 * half - 0.6;
     const Vec2 stove(side * (-half + 0.28 * length), front - stand_from_counter_m);
     const Vec2 sink(side * (-half + 0.75 * length), front - stand_from_counter_m);
-    add_place("stove", PlacePosture::stand, *spot, stove, 2, 0.0, {"cook"});
-    add_place("sink", PlacePosture::stand, *spot, sink, 2, 0.0, {"chores", "cook"});
+    add_place(named("stove"), PlacePosture::stand, *spot, stove, 2, 0.0, {"cook"});
+    add_place(named("sink"), PlacePosture::stand, *spot, sink, 2, 0.0, {"chores", "cook"});
   }
 
   void add_bath(RoomFloor& floor) {
+    add_shower(floor);
+    add_toilet(floor);
+    add_washbasin(floor);
+  }
+
+  void add_shower(RoomFloor& floor) {
     const Rectangle shower{{-0.45, -0.9}, {0.45, 0.0}};
-    const auto tray = floor.put_at_wall({shower, {{-0.45, -1.4}, {0.45, 0.0}}}, 0.45, stream_);
+    const auto tray = put_at_wall(floor, {shower, {{-0.45, -1.4}, {0.45, 0.0}}}, 0.45);
     if (!tray) return fail("there was no place for a shower");
-    add("shower tray", *tray, {{{{-0.44, -0.88}, {0.44, -off_wall_m}}, 0.0, 0.02}});
-    add_place("shower", PlacePosture::stand, *tray, {0.0, -0.45}, 0, 0.0, {"shower", "wash"});
+    const std::string id = named("shower");
+    add(id + " tray", *tray, {{{{-0.44, -0.88}, {0.44, -off_wall_m}}, 0.0, 0.02}});
+    add_place(id, PlacePosture::stand, *tray, {0.0, -0.45}, 0, 0.0, {"shower", "wash"});
+  }
+
+  void add_toilet(RoomFloor& floor) {
     const Rectangle bowl{{-0.2, -0.7}, {0.2, -off_wall_m}};
-    const auto toilet = floor.put_at_wall(
-        {{{-0.2, -0.48 - knees_m}, {0.2, -off_wall_m}}, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4, stream_);
+    const auto toilet =
+        put_at_wall(floor, {{{-0.2, -0.48 - knees_m}, {0.2, -off_wall_m}}, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4);
     if (!toilet) return fail("there was no place for a toilet");
-    add("toilet", *toilet, {{bowl, 0.0, 0.42}});
-    add_seat("toilet", *toilet, {0.0, -0.48}, 0, 0.42 + pelvis_above_seat_m, {"toilet"});
+    const std::string id = named("toilet");
+    add(id, *toilet, {{bowl, 0.0, 0.42}});
+    add_seat(id, *toilet, {0.0, -0.48}, 0, 0.42 + pelvis_above_seat_m, {"toilet"});
+  }
+
+  void add_washbasin(RoomFloor& floor) {
     const Rectangle basin{{-0.3, -0.42}, {0.3, -off_wall_m}};
-    const auto sink = floor.put_at_wall({basin, {{-0.35, -1.1}, {0.35, -off_wall_m}}}, 0.35, stream_);
+    const auto sink = put_at_wall(floor, {basin, {{-0.35, -1.1}, {0.35, -off_wall_m}}}, 0.35);
     if (!sink) return fail("there was no place for a basin");
-    add("basin", *sink, {{basin, 0.7, 0.85}});
-    add_place("washbasin", PlacePosture::stand, *sink, {0.0, -0.78}, 2, 0.0, {"wash", "dress"});
+    add(named("basin"), *sink, {{basin, 0.7, 0.85}});
+    add_place(named("washbasin"), PlacePosture::stand, *sink, {0.0, -0.78}, 2, 0.0, {"wash", "dress"});
   }
 
   void add_wardrobe(RoomFloor& floor) {
-    const double half = 0.5 * draw_length({1.0, 1.8}, stream_);
+    const double half = 0.5 * width({1.0, 1.8});
     const Rectangle solid{{-half, -0.62}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({solid, {{-half, -1.1}, {half, -off_wall_m}}}, half, stream_);
+    const auto spot = put_at_wall(floor, {solid, {{-half, -1.1}, {half, -off_wall_m}}}, half);
     if (!spot) return fail("there was no place for a wardrobe");
     add("wardrobe " + std::to_string(++wardrobes_), *spot, {{solid, 0.0, 2.0}});
   }
 
   void add_desk(RoomFloor& floor, Wanted wanted) {
-    const double half = 0.5 * draw_length({1.2, 1.6}, stream_), front = -off_wall_m - desk_depth_m;
+    const double half = 0.5 * width({1.2, 1.6}), front = -off_wall_m - desk_depth_m;
     const Rectangle solid{{-half, front}, {half, -off_wall_m}};
     const Rectangle with_sitter{{-half, front - 0.28 - back_m}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({with_sitter, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half, stream_);
+    const auto spot = put_at_wall(floor, {with_sitter, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half);
     if (!spot && wanted == Wanted::always) return fail("there was no place for a desk");
     if (!spot) return;
     const std::string number = std::to_string(++desks_);
@@ -353,13 +525,14 @@ class FlatFurnisher {
     add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
   }
 
-  /// Where it fits.
+  /// Where it fits; a drawn flat may go without.
   void add_shelf(RoomFloor& floor) {
-    const double half = 0.5 * draw_length({0.8, 1.6}, stream_);
+    const double half = 0.5 * width({0.8, 1.6});
     const double height = one_of(std::vector<double>{0.8, 1.2, 2.0}, stream_);
     const Rectangle solid{{-half, -0.35}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({solid, {{-half, -0.8}, {half, -off_wall_m}}}, half, stream_);
-    if (spot) add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+    const auto spot = put_at_wall(floor, {solid, {{-half, -0.8}, {half, -off_wall_m}}}, half);
+    if (spot) return add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+    if (asked_ != nullptr) fail("there was no place for a shelf");
   }
 
   const FlatSpec& spec_;
@@ -369,6 +542,14 @@ class FlatFurnisher {
   Demands demands_{{}, least_places};
   std::vector<RoomFloor> floors_;  ///< (rooms)
   std::string lacking_;
+  struct Taken {
+    Rectangle area;
+    std::string fault;  ///< of what is put there
+  };
+  std::vector<Taken> taken_;              ///< by doors, and by what a plan gives a place
+  const PlanPieceSpec* asked_ = nullptr;  ///< what is put down, if a plan asks for it
+  Diagnostics* faults_ = nullptr;         ///< of a plan
+  std::map<std::string, int> numbers_;    ///< of things by kind
   int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
 };
 
@@ -378,6 +559,19 @@ std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int resi
   auto plan = lay_out(spec, residents, stream);
   if (auto* lacking = std::get_if<NoPlace>(&plan)) return *lacking;
   return FlatFurnisher(spec, residents, std::get<FlatPlan>(std::move(plan)), stream).furnish();
+}
+
+std::variant<FurnishedFlat, NoPlace> furnish_flat(const HomePlanSpec& own, const FlatPlan& plan, Stream& stream,
+                                                  Diagnostics& faults) {
+  FlatSpec spec;
+  spec.height_m = {own.height_m, own.height_m};
+  int residents = 0;
+  for (const PlanRoomSpec& room : own.rooms) {
+    if (!room.furniture) residents += room.kind == Kind::bedroom ? 2 : 0;
+    for (const PlanPieceSpec& piece : room.furniture.value_or(std::vector<PlanPieceSpec>{}))
+      residents += piece.kind == PieceKind::bed ? piece.places.value_or(1) : 0;
+  }
+  return FlatFurnisher(spec, residents, plan, stream).furnish(own, faults);
 }
 
 namespace {
@@ -431,37 +625,93 @@ const std::vector<std::string>& models_of(const FlatSpec& spec, SensorsAt at, Mo
   return mount == Mount::ceiling ? ceiling : corner;
 }
 
+namespace {
+
+Frame looking_down(const Vec2& from, double turn_rad, double ceiling_m) {
+  return {rotation_from_heading(turn_rad) * glm::angleAxis(-0.5 * pi, Vec3(1, 0, 0)),
+          Vec3(from.x, ceiling_m - 0.01, from.y)};
+}
+
+/// Just off the walls; which: 0 to 3, from that of least x and z on.
+Vec2 corner_of(const Rectangle& r, std::uint32_t which) {
+  return {(which & 1) != 0 ? r.upper.x - sensor_off_wall_m : r.lower.x + sensor_off_wall_m,
+          (which & 2) != 0 ? r.upper.y - sensor_off_wall_m : r.lower.y + sensor_off_wall_m};
+}
+/// From the first one on, unless furniture hides it.
+Vec2 free_corner(const Rectangle& r, std::uint32_t first, const std::vector<Rectangle>& tall) {
+  std::uint32_t which = first;
+  while (which < first + 3 && is_behind_furniture(corner_of(r, which % 4), tall)) ++which;
+  return corner_of(r, which % 4);
+}
+
+void hang_in_room(const FlatSpec& spec, const FlatPlan& plan, std::size_t room, Mount mount,
+                  const std::vector<Rectangle>& tall, double height_m, Stream& stream, SceneSpec& scene) {
+  const std::string& area = plan.rooms[room].id;
+  SensorSpec& sensor = add_sensor(spec, SensorsAt::rooms, mount, room_sensor_name(area), stream, scene);
+  sensor.area = area;
+  const Rectangle r = plan.clear_floor(room);
+  const Vec2 centre = 0.5 * (r.lower + r.upper);
+  if (mount == Mount::ceiling) {
+    sensor.world_from_sensor = looking_down(centre, radians(5.0 * stream.index(72)), height_m);
+    return;
+  }
+  const double high = std::min(draw_length(spec.sensor_height_m, stream), height_m - sensor_off_wall_m);
+  const double tilt = radians(std::round(draw(spec.sensor_tilt_deg, stream)));
+  const Vec2 corner = free_corner(r, stream.index(4), tall);
+  sensor.world_from_sensor = {looking(centre - corner, tilt), Vec3(corner.x, high, corner.y)};
+}
+
+/// Where a plan says.
+Frame hung(const PlanSensorSpec& own, const Rectangle& room, double ceiling_m) {
+  const Vec2 centre = 0.5 * (room.lower + room.upper);
+  const Vec2 place{own.x_m.value_or(centre.x), own.y_m ? 0.0 - *own.y_m : centre.y};
+  const double turn = radians(own.turned_deg), high = std::min(own.height_m, ceiling_m - sensor_off_wall_m);
+  Vec2 from{0.0}, towards{0.0};
+  if (own.corner) {
+    from = corner_of(room, static_cast<std::uint32_t>(*own.corner) ^ 2U);  // z points down the page
+    towards = centre - from;
+  } else if (own.wall) {
+    const Wall wall = wall_of(room, *own.wall);
+    towards = wall.inward();
+    from = (runs_along_x(*own.wall) ? Vec2(place.x, wall.from.y) : Vec2(wall.from.x, place.y)) +
+           sensor_off_wall_m * towards;
+  } else {
+    return looking_down(place, turn, ceiling_m);
+  }
+  return {rotation_from_heading(turn) * looking(towards, radians(own.tilt_deg)), Vec3(from.x, high, from.y)};
+}
+
+}  // namespace
+
 void hang_in_rooms(const FlatSpec& spec, const FlatPlan& plan, double height_m, Stream& stream, SceneSpec& scene) {
   const Mount mount = one_of(spec.mounts, stream);
   const std::vector<Rectangle> tall = tall_furniture(scene, height_m);
-  for (std::size_t i = 0; i < plan.rooms.size(); ++i) {
-    SensorSpec& sensor = add_sensor(spec, SensorsAt::rooms, mount, room_sensor_name(plan.rooms[i].id), stream, scene);
-    sensor.area = plan.rooms[i].id;
-    const Rectangle r = plan.clear_floor(i);
-    const Vec2 centre = 0.5 * (r.lower + r.upper);
-    if (mount == Mount::ceiling) {
-      const double turn = radians(5.0 * stream.index(72));
-      sensor.world_from_sensor = {rotation_from_heading(turn) * glm::angleAxis(-0.5 * pi, Vec3(1, 0, 0)),
-                                  Vec3(centre.x, height_m - 0.01, centre.y)};
-      continue;
+  for (std::size_t i = 0; i < plan.rooms.size(); ++i) hang_in_room(spec, plan, i, mount, tall, height_m, stream, scene);
+}
+
+void hang_sensors(const HomePlanSpec& own, const FlatPlan& plan, const FlatSpec& usual, Stream& stream,
+                  DrawnFlat& flat) {
+  SceneSpec& scene = flat.scene;
+  const std::vector<Rectangle> tall = tall_furniture(scene, flat.height_m);
+  for (std::size_t i = 0; i < own.rooms.size(); ++i) {
+    const auto is_of_area = [&](const SensorSpec& sensor) { return sensor.area == plan.rooms[i].id; };
+    if (!own.rooms[i].sensors && std::ranges::none_of(scene.sensors, is_of_area))
+      hang_in_room(usual, plan, i, Mount::corner, tall, flat.height_m, stream, scene);
+    for (const PlanSensorSpec& one : own.rooms[i].sensors.value_or(std::vector<PlanSensorSpec>{})) {
+      const Mount mount = one.corner ? Mount::corner : one.wall ? Mount::wall : Mount::ceiling;
+      SensorSpec& sensor = scene.sensors.emplace_back();
+      sensor.id = one.id;
+      sensor.model = one.model.empty() ? models_of(usual, SensorsAt::rooms, mount).front() : one.model;
+      sensor.area = plan.rooms[i].id;
+      sensor.world_from_sensor = hung(one, plan.clear_floor(i), flat.height_m);
     }
-    const double high = std::min(draw_length(spec.sensor_height_m, stream), height_m - sensor_off_wall_m);
-    const double tilt = radians(std::round(draw(spec.sensor_tilt_deg, stream)));
-    Vec2 corner{0.0};
-    for (std::uint32_t k = 0, first = stream.index(4); k < 4; ++k) {
-      const std::uint32_t which = (first + k) % 4;
-      corner = {(which & 1) != 0 ? r.upper.x - sensor_off_wall_m : r.lower.x + sensor_off_wall_m,
-                (which & 2) != 0 ? r.upper.y - sensor_off_wall_m : r.lower.y + sensor_off_wall_m};
-      if (!is_behind_furniture(corner, tall)) break;
-    }
-    sensor.world_from_sensor = {looking(centre - corner, tilt), Vec3(corner.x, high, corner.y)};
   }
 }
 
 void hang_at_doorways(const FlatSpec& spec, const FlatPlan& plan, Stream& stream, SceneSpec& scene) {
   for (const Doorway& door : plan.doorways) {
-    const std::string name = doorway_sensor_name(door.from ? plan.rooms[door.into].id : front_door_name);
-    SensorSpec& sensor = add_sensor(spec, SensorsAt::doorways, Mount::wall, name, stream, scene);
+    SensorSpec& sensor =
+        add_sensor(spec, SensorsAt::doorways, Mount::wall, doorway_sensor_name(door.id), stream, scene);
     // Nobody hangs one outside of the front door.
     const Vec2 towards = door.from ? -door.direction : door.direction;
     sensor.area = plan.rooms[door.from.value_or(door.into)].id;
@@ -473,7 +723,7 @@ void hang_at_doorways(const FlatSpec& spec, const FlatPlan& plan, Stream& stream
 
 namespace {
 
-constexpr double leaf_m = doorway_m - 0.02;
+constexpr double leaf_gap_m = 0.02;
 
 /// A wall seen from above, along x or along z, with gaps from its lower end on.
 struct Straight {
@@ -487,15 +737,26 @@ class Shell {
 
   void build() {
     const Rectangle& b = plan_.bounds;
-    scene_.floor = FloorArea({outline(b)}, 0.0);
-    scene_.meshes.push_back(floor_mesh({b}));
-    for (const FlatRoom& room : plan_.rooms) scene_.areas.push_back({room.id, FloorArea({outline(room.area)}, 0.0)});
+    std::vector<Rectangle> all;
+    std::map<std::string, std::vector<Rectangle>> of_area;
+    for (const FlatRoom& room : plan_.rooms) {
+      all.push_back(room.area);
+      of_area[room.id].push_back(room.area);
+    }
+    const double area_m2 =
+        std::accumulate(all.begin(), all.end(), 0.0, [](double sum, const Rectangle& r) { return sum + r.area_m2(); });
+    constexpr double rounding_m2 = 1e-6;
+    if (b.area_m2() - area_m2 < rounding_m2) all = {b};
+    scene_.floor = FloorArea(outlines(all), 0.0);
+    scene_.meshes.push_back(floor_mesh(all));
+    for (const FlatRoom& room : plan_.rooms) {
+      if (const auto area = of_area.extract(room.id))
+        scene_.areas.push_back({room.id, FloorArea(outlines(area.mapped()), 0.0)});
+    }
     constexpr double w = flat_wall_m, half = 0.5 * flat_wall_m;
     add_box("ceiling", {b.lower - Vec2(w), b.upper + Vec2(w)}, height_m_, height_m_ + w);
-    add_wall({{{b.lower.x - w, b.upper.y}, {b.upper.x + w, b.upper.y + w}}, true});
-    add_wall({{{b.lower.x - w, b.lower.y - w}, {b.upper.x + w, b.lower.y}}, true});
-    add_wall({{{b.lower.x - w, b.lower.y}, {b.lower.x, b.upper.y}}, false});
-    add_wall({{{b.upper.x, b.lower.y}, {b.upper.x + w, b.upper.y}}, false});
+    for (const PlanSide side : {PlanSide::bottom, PlanSide::top, PlanSide::left, PlanSide::right})
+      add_outer_walls(side, all);
     for (const InnerWall& wall : plan_.inner_walls) {
       const bool is_along_x = wall.from.y == wall.to.y;
       const Vec2 thick = is_along_x ? Vec2(0.0, half) : Vec2(half, 0.0);
@@ -505,14 +766,56 @@ class Shell {
   }
 
  private:
-  /// Counter-clockwise seen from above.
-  static std::vector<Vec2> outline(const Rectangle& r) {
-    return {{r.lower.x, r.upper.y}, r.upper, {r.upper.x, r.lower.y}, r.lower};
+  /// Of all of them together; counter-clockwise seen from above.
+  static std::vector<std::vector<Vec2>> outlines(const std::vector<Rectangle>& rectangles) {
+    const Rectangle& r = rectangles.front();
+    if (rectangles.size() == 1) return {{{r.lower.x, r.upper.y}, r.upper, {r.upper.x, r.lower.y}, r.lower}};
+    // Traced on a grid whose lines go through all sides.
+    std::set<double> xs, zs;
+    for (const Rectangle& one : rectangles) {
+      xs.insert({one.lower.x, one.upper.x});
+      zs.insert({one.lower.y, one.upper.y});
+    }
+    const std::vector<double> x(xs.begin(), xs.end()), z(zs.begin(), zs.end());
+    CellGrid grid({}, {}, 0.0, 1.0, 1);
+    grid.n_columns = x.size() - 1, grid.n_rows = z.size() - 1;
+    Cells taken(grid.size(), 0);
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      const Rectangle cell{{x[i % grid.n_columns], z[i / grid.n_columns]},
+                           {x[i % grid.n_columns + 1], z[i / grid.n_columns + 1]}};
+      taken[i] = std::ranges::any_of(rectangles, [&](const Rectangle& one) { return overlap(one, cell); }) ? 1 : 0;
+    }
+    std::vector<std::vector<Vec2>> loops = outlines_of(grid, taken, 0.0);
+    for (Vec2& corner : loops | std::views::join)
+      corner = {x[static_cast<std::size_t>(corner.x)], z[static_cast<std::size_t>(corner.y)]};
+    return loops;
   }
 
   void add_box(const std::string& name, const Rectangle& area, double from_y, double to_y) {
     const std::array parts{BoxPart{area, from_y, to_y}};
     scene_.meshes.push_back(boxes(name, {}, parts));
+  }
+
+  /// Where the floor reaches to that side of the bounds: who enters beside it comes through no wall.
+  void add_outer_walls(PlanSide side, const std::vector<Rectangle>& floors) {
+    constexpr double w = flat_wall_m, touch_m = 1e-6;
+    const bool at_x = runs_along_x(side);
+    const Vec2 edge = wall_of(plan_.bounds, side).from;
+    const double out = side == PlanSide::bottom || side == PlanSide::right ? w : -w;
+    std::vector<std::pair<double, double>> runs;  // from, to
+    for (const Rectangle& r : floors) {
+      const Vec2 own = wall_of(r, side).from;
+      if (at_x && own.y == edge.y) runs.emplace_back(r.lower.x, r.upper.x);
+      if (!at_x && own.x == edge.x) runs.emplace_back(r.lower.y, r.upper.y);
+    }
+    std::ranges::sort(runs);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      auto [from, to] = runs[i];
+      while (i + 1 < runs.size() && runs[i + 1].first < to + touch_m) to = runs[++i].second;
+      const Vec2 low = at_x ? Vec2(from - w, edge.y) : Vec2(edge.x, from);
+      const Vec2 high = at_x ? Vec2(to + w, edge.y + out) : Vec2(edge.x + out, to);
+      add_wall({{glm::min(low, high), glm::max(low, high)}, at_x});
+    }
   }
 
   /// In pieces beside and above its doorways.
@@ -523,33 +826,36 @@ class Shell {
       return wall.is_along_x ? Rectangle{{from, wall.area.lower.y}, {to, wall.area.upper.y}}
                              : Rectangle{{wall.area.lower.x, from}, {wall.area.upper.x, to}};
     };
-    std::vector<double> gaps;
+    std::vector<std::pair<double, double>> gaps;  // from, to
     for (const Doorway& door : plan_.doorways) {
       constexpr double touch_m = 1e-6;
       const Vec2 m = door.middle;
       const Rectangle& a = wall.area;
       const bool is_in = m.x > a.lower.x - touch_m && m.x < a.upper.x + touch_m && m.y > a.lower.y - touch_m &&
                          m.y < a.upper.y + touch_m && (door.direction.x == 0.0) == wall.is_along_x;
-      if (is_in) gaps.push_back(along(m));
+      if (is_in) gaps.emplace_back(along(m) - 0.5 * door.width_m, along(m) + 0.5 * door.width_m);
     }
     std::ranges::sort(gaps);
     double from = along(wall.area.lower);
-    for (const double gap : gaps) {
-      add_box(name, piece(from, gap - 0.5 * doorway_m), 0.0, height_m_);
-      from = gap + 0.5 * doorway_m;
-      add_box(name + " above a doorway", piece(gap - 0.5 * doorway_m, from), doorway_height_m, height_m_);
+    for (const auto& [begin, end] : gaps) {
+      add_box(name, piece(from, begin), 0.0, height_m_);
+      from = end;
+      add_box(name + " above a doorway", piece(begin, end), doorway_height_m, height_m_);
     }
     add_box(name, piece(from, along(wall.area.upper)), 0.0, height_m_);
   }
 
   void add_door(const Doorway& door) {
     const Frame frame{rotation_from_heading(heading_of(door.direction)), Vec3(door.middle.x, 0.0, door.middle.y)};
-    if (!door.from) scene_.entrances.push_back({"entrance", frame, doorway_m, 1.5});
+    if (!door.from) {
+      const std::string which = scene_.entrances.empty() ? "" : '_' + std::to_string(scene_.entrances.size() + 1);
+      scene_.entrances.push_back({"entrance" + which, frame, door.width_m, 1.5});
+    }
     if (!door.leaf) return;
     DoorSpec leaf;
-    leaf.id = door.from ? plan_.rooms[door.into].id : front_door_name;
+    leaf.id = door.id;
     leaf.world_from_door = frame;
-    leaf.width_m = leaf_m;
+    leaf.width_m = door.width_m - leaf_gap_m;
     leaf.hinge = door.hinge;
     leaf.state = *door.leaf;
     scene_.doors.push_back(leaf);
@@ -565,16 +871,24 @@ class Shell {
 
 void build_shell(const FlatPlan& plan, double height_m, SceneSpec& scene) { Shell(plan, height_m, scene).build(); }
 
-DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
-  const auto which = static_cast<std::uint32_t>(number);
-  // Drawn once: who is refused for lack of space stays.
-  Stream people({seed, which, 0, Purpose::flat_household});
-  const int residents = draw(spec.residents, people);
-  ModelFinder models({{spec.models, spec.models_where}}, spec.where, options);
+namespace {
+
+/// Attempts at a flat, until one has no fault.
+struct Attempts {
+  std::string name;        ///< of the scene
+  std::string drawn_from;  ///< for messages
+  int most = 0;
+  Where where;
+};
+
+/// furnish(stream): a FurnishedFlat or NoPlace; fault_of(scene, demands): or nothing.
+template <typename Furnish, typename FaultOf>
+DrawnFlat first_usable(const Attempts& attempts, std::uint64_t seed, int number, ModelFinder& models,
+                       const Furnish& furnish, const FaultOf& fault_of) {
   Failures failures;
-  for (int tries = 1; tries <= most_tries; ++tries) {
-    Stream stream({seed, which, static_cast<std::uint32_t>(tries), Purpose::flat});
-    auto drawn = furnish_flat(spec, residents, stream);
+  for (int tries = 1; tries <= attempts.most; ++tries) {
+    Stream stream({seed, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(tries), Purpose::flat});
+    auto drawn = furnish(stream);
     if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
       failures.add(lacking->reason);
       continue;
@@ -582,13 +896,43 @@ DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const 
     auto& [flat, demands] = std::get<FurnishedFlat>(drawn);
     flat.number = number;
     flat.tries = tries;
-    flat.scene.name = "flat " + std::to_string(number);
+    flat.scene.name = attempts.name;
     models.add_to(flat.scene);
     const std::string fault = fault_of(flat.scene, demands);
     if (fault.empty()) return std::move(flat);
     failures.add(fault);
   }
-  failures.give_up("flat", number, spec.where);
+  failures.give_up("flat", number, attempts.drawn_from, attempts.where);
+}
+
+}  // namespace
+
+DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
+  // Drawn once: who is refused for lack of space stays.
+  Stream people({seed, static_cast<std::uint32_t>(number), 0, Purpose::flat_household});
+  const int residents = draw(spec.residents, people);
+  ModelFinder models({{spec.models, spec.models_where}}, spec.where, options);
+  return first_usable(
+      {"flat " + std::to_string(number), "these ranges", most_tries, spec.where}, seed, number, models,
+      [&](Stream& stream) { return furnish_flat(spec, residents, stream); }, fault_of);
+}
+
+DrawnFlat draw_flat(const HomePlanSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
+  constexpr int most_tries_of_plans = 30;  // what has its place stays there
+  const FlatPlan plan = plan_of(spec);
+  std::vector<ModelFinder::Named> named;
+  for (const PlanRoomSpec& room : spec.rooms)
+    for (const PlanSensorSpec& sensor : room.sensors.value_or(std::vector<PlanSensorSpec>{}))
+      named.push_back({{sensor.model}, sensor.where});
+  ModelFinder models(std::move(named), spec.where, options);
+  const auto furnish = [&](Stream& stream) {
+    Diagnostics faults;
+    auto drawn = furnish_flat(spec, plan, stream, faults);
+    faults.throw_if_errors();
+    return drawn;
+  };
+  return first_usable({spec.name, "this plan", most_tries_of_plans, spec.where}, seed, number, models, furnish,
+                      [](const SceneSpec& scene, const Demands&) { return unreached(scene); });
 }
 
 }  // namespace pirsim::dataset

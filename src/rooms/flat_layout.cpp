@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "rooms/recipe_fields.hpp"
+
 namespace pirsim::dataset {
 namespace {
 
@@ -45,22 +47,7 @@ bool has_doorway(const FlatSpec& spec, Kind kind) {
 }  // namespace
 
 std::string area_name(FlatRoomKind kind, int which) {
-  const std::string number = which == 1 ? "" : '_' + std::to_string(which);
-  switch (kind) {
-    case Kind::living_room:
-      return "living_room" + number;
-    case Kind::kitchen:
-      return "kitchen" + number;
-    case Kind::bath:
-      return "bath" + number;
-    case Kind::study:
-      return "study" + number;
-    case Kind::bedroom:
-      return "bedroom" + number;
-    case Kind::corridor:
-      break;
-  }
-  return "corridor" + number;
+  return word_of(kind) + (which == 1 ? "" : '_' + std::to_string(which));
 }
 
 bool has_leaf(FlatRoomKind kind) noexcept { return kind == Kind::bath || kind == Kind::bedroom; }
@@ -152,7 +139,7 @@ class FlatArchitect {
     for (std::size_t i = 0; i < plan_.rooms.size(); ++i) add_doorway(i);
     if (!lacking_.empty()) return NoPlace{lacking_};
     mirror();
-    add_inner_walls();
+    plan_.inner_walls = walls_between(plan_.rooms);
     return std::move(plan_);
   }
 
@@ -270,6 +257,7 @@ class FlatArchitect {
 
   void add_front_door() {
     Doorway door;
+    door.id = front_door_name;
     door.leaf = DoorState::shut;
     door.into = corridor().value_or(0);
     const Rectangle& r = plan_.rooms[door.into].area;
@@ -304,7 +292,11 @@ class FlatArchitect {
     const double room_m = high - low - 2.0 * keep;
     const bool at_low_end = stream_.index(2) == 0;
     const double along = draw_length({0.0, is_shut ? std::min(room_m, 0.3) : room_m}, stream_);
-    Doorway door{from, into, {}, {0.0, is_behind ? -1.0 : 1.0}, {}, {}};
+    Doorway door;
+    door.id = plan_.rooms[into].id;
+    door.from = from;
+    door.into = into;
+    door.direction = {0.0, is_behind ? -1.0 : 1.0};
     door.middle = {whole_cm(at_low_end ? low + keep + along : high - keep - along), is_behind ? b.upper.y : b.lower.y};
     if (is_shut) door.leaf = DoorState::habit;
     // Who goes towards -z has +x to the right.
@@ -327,19 +319,6 @@ class FlatArchitect {
       door.middle = flipped(door.middle);
       door.direction *= Vec2(in_x ? -1.0 : 1.0, in_z ? -1.0 : 1.0);
       if (in_x != in_z) door.hinge = door.hinge == DoorHinge::left ? DoorHinge::right : DoorHinge::left;
-    }
-  }
-
-  void add_inner_walls() {
-    for (const FlatRoom& one : plan_.rooms) {
-      for (const FlatRoom& other : plan_.rooms) {
-        const Rectangle &a = one.area, &b = other.area;
-        const Vec2 low{std::max(a.lower.x, b.lower.x), std::max(a.lower.y, b.lower.y)};
-        const Vec2 high{std::min(a.upper.x, b.upper.x), std::min(a.upper.y, b.upper.y)};
-        const bool is_upright = a.upper.x == b.lower.x && high.y > low.y;
-        const bool is_across = a.upper.y == b.lower.y && high.x > low.x;
-        if (is_upright || is_across) plan_.inner_walls.push_back({low, high});
-      }
     }
   }
 
@@ -366,6 +345,28 @@ Rectangle FlatPlan::clear_floor(std::size_t room) const {
            area.lower.y + (area.lower.y > bounds.lower.y ? half : 0.0)},
           {area.upper.x - (area.upper.x < bounds.upper.x ? half : 0.0),
            area.upper.y - (area.upper.y < bounds.upper.y ? half : 0.0)}};
+}
+
+Wall wall_of(const Rectangle& room, PlanSide side) { return FloorPlan(room).walls()[static_cast<std::size_t>(side)]; }
+
+std::optional<InnerWall> shared_wall(const Rectangle& room, PlanSide side, const Rectangle& other) {
+  const bool at_x = runs_along_x(side), at_upper = side == PlanSide::bottom || side == PlanSide::right;
+  const Vec2 &own = at_upper ? room.upper : room.lower, &facing = at_upper ? other.lower : other.upper;
+  const Vec2 low = glm::max(room.lower, other.lower), high = glm::min(room.upper, other.upper);
+  if (at_x ? own.y != facing.y || high.x <= low.x : own.x != facing.x || high.y <= low.y) return std::nullopt;
+  return InnerWall{low, high};
+}
+
+std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms) {
+  std::vector<InnerWall> walls;
+  for (const FlatRoom& one : rooms) {
+    for (const FlatRoom& other : rooms) {
+      if (one.id == other.id) continue;
+      for (const PlanSide side : {PlanSide::right, PlanSide::bottom})
+        if (const auto wall = shared_wall(one.area, side, other.area)) walls.push_back(*wall);
+    }
+  }
+  return walls;
 }
 
 std::variant<FlatPlan, NoPlace> lay_out(const FlatSpec& spec, int residents, Stream& stream) {

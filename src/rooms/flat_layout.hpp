@@ -34,6 +34,8 @@ inline constexpr double doorway_height_m = 2.1;
 
 /// A gap in a wall, with a leaf or without.
 struct Doorway {
+  std::string id{};
+  double width_m = doorway_m;
   std::optional<std::size_t> from;  ///< index of the room that it leads out of; none: from outside
   std::size_t into = 0;
   Vec2 middle{0.0};     ///< on the wall's middle; of the front door on the floor's edge
@@ -55,6 +57,20 @@ struct FlatPlan {
   /// Without the walls.
   [[nodiscard]] Rectangle clear_floor(std::size_t room) const;
 };
+
+/// A room's wall on that side of the page, seen from inside.
+[[nodiscard]] Wall wall_of(const Rectangle& room, PlanSide side);
+/// What of it another room has behind it, or nothing.
+[[nodiscard]] std::optional<InnerWall> shared_wall(const Rectangle& room, PlanSide side, const Rectangle& other);
+/// Of rooms that touch, unless they are of one area.
+[[nodiscard]] std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms);
+
+/// Rooms and ways of a plan, in its order. Throws Error(input) for what doesn't fit together.
+[[nodiscard]] FlatPlan plan_of(const HomePlanSpec& plan);
+/// Whether a room's wall on that side of the page does.
+[[nodiscard]] constexpr bool runs_along_x(PlanSide side) noexcept {
+  return side == PlanSide::bottom || side == PlanSide::top;
+}
 
 /// One attempt. How many bedrooms there are goes by the residents, two a room.
 [[nodiscard]] std::variant<FlatPlan, NoPlace> lay_out(const FlatSpec& spec, int residents, Stream& stream);

@@ -209,6 +209,16 @@ bool gets_in_at_own_side(const sim::PersonModel& person, const SceneSpec& scene,
 
 }  // namespace
 
+std::string unreached(const SceneSpec& scene) {
+  try {
+    static_cast<void>(compile(scene, tour_of(scene, {})));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return error.issues().front().message;
+  }
+  return {};
+}
+
 std::string fault_of(const SceneSpec& scene, const Demands& demands) {
   try {
     const Model model = compile(scene, tour_of(scene, demands));
@@ -240,14 +250,16 @@ void ModelFinder::add_to(SceneSpec& scene) {
   }
 }
 
-void Failures::give_up(const std::string& what, int number, const Where& where) const {
+void Failures::give_up(const std::string& what, int number, const std::string& drawn_from, const Where& where) const {
   std::string told;
+  int tries = 0;
   for (const auto& [reason, times] : reasons_) {
+    tries += times;
     told += (told.empty() ? "" : "; ") + std::to_string(times) + (times == 1 ? " time " : " times ") + reason;
   }
   throw Error(ErrorCode::infeasible, where,
-              what + ' ' + std::to_string(number) + ": none of " + std::to_string(most_tries) + ' ' + what +
-                  "s drawn from these ranges could be used (" + told + "): allow more space or less furniture");
+              what + ' ' + std::to_string(number) + ": none of " + std::to_string(tries) + ' ' + what +
+                  "s drawn from " + drawn_from + " could be used (" + told + "): allow more space or less furniture");
 }
 
 namespace {
@@ -627,7 +639,7 @@ DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const 
     if (fault.empty()) return std::move(room);
     failures.add(fault);
   }
-  failures.give_up("room", number, spec.where);
+  failures.give_up("room", number, "these ranges", spec.where);
 }
 
 }  // namespace pirsim::dataset

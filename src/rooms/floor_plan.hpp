@@ -101,6 +101,8 @@ struct Demands {
   std::size_t least_places = 0;            ///< of a grid of 0.25 m, where each sensor must see who stands there
 };
 
+/// What the largest person can't reach from the entrances, as who looked for a way says it; or nothing.
+[[nodiscard]] std::string unreached(const SceneSpec& scene);
 /// Why nobody could use what was drawn, or nothing: what the largest person can't reach from the entrances, a sensor
 /// that sees nobody.
 [[nodiscard]] std::string fault_of(const SceneSpec& scene, const Demands& demands = {});
@@ -129,7 +131,8 @@ class Failures {
  public:
   void add(const std::string& reason) { ++reasons_[reason]; }
   /// "room 3: none of 300 rooms drawn ..."; what: "room".
-  [[noreturn]] void give_up(const std::string& what, int number, const Where& where) const;
+  [[noreturn]] void give_up(const std::string& what, int number, const std::string& drawn_from,
+                            const Where& where) const;
 
  private:
   std::map<std::string, int> reasons_;

@@ -28,6 +28,53 @@ struct Words<dataset::Mount> {
       {{"ceiling", dataset::Mount::ceiling}, {"corner", dataset::Mount::corner}, {"wall", dataset::Mount::wall}}};
 };
 template <>
+struct Words<dataset::FlatRoomKind> {
+  using K = dataset::FlatRoomKind;
+  static constexpr WordList<K, 6> all{{{"living_room", K::living_room},
+                                       {"kitchen", K::kitchen},
+                                       {"bedroom", K::bedroom},
+                                       {"study", K::study},
+                                       {"bath", K::bath},
+                                       {"corridor", K::corridor}}};
+};
+template <>
+struct Words<dataset::PlanSide> {
+  using S = dataset::PlanSide;
+  static constexpr WordList<S, 4> all{{{"bottom", S::bottom}, {"right", S::right}, {"top", S::top}, {"left", S::left}}};
+};
+template <>
+struct Words<dataset::PlanCorner> {
+  using C = dataset::PlanCorner;
+  static constexpr WordList<C, 4> all{{{"bottom_left", C::bottom_left},
+                                       {"bottom_right", C::bottom_right},
+                                       {"top_left", C::top_left},
+                                       {"top_right", C::top_right}}};
+};
+template <>
+struct Words<dataset::PlanLeaf> {
+  using L = dataset::PlanLeaf;
+  static constexpr WordList<L, 4> all{{{"none", L::none}, {"open", L::open}, {"shut", L::shut}, {"habit", L::habit}}};
+};
+template <>
+struct Words<dataset::PieceKind> {
+  using K = dataset::PieceKind;
+  static constexpr WordList<K, 15> all{{{"bed", K::bed},
+                                        {"sofa", K::sofa},
+                                        {"table", K::table},
+                                        {"kitchen", K::kitchen},
+                                        {"counter", K::counter},
+                                        {"stove", K::stove},
+                                        {"sink", K::sink},
+                                        {"fridge", K::fridge},
+                                        {"shower", K::shower},
+                                        {"toilet", K::toilet},
+                                        {"washbasin", K::washbasin},
+                                        {"wardrobe", K::wardrobe},
+                                        {"desk", K::desk},
+                                        {"shelf", K::shelf},
+                                        {"television", K::television}}};
+};
+template <>
 struct Words<dataset::FlatLayout> {
   static constexpr WordList<dataset::FlatLayout, 3> all{{{"corridor", dataset::FlatLayout::corridor},
                                                          {"hall", dataset::FlatLayout::hall},
@@ -53,6 +100,7 @@ struct Words<dataset::Export> {
 namespace accepted {
 
 inline constexpr NumberRange side_m{.min = 1.5, .max = 100.0};
+inline constexpr NumberRange on_page_m{.min = -1000.0, .max = 1000.0};
 inline constexpr IntegerRange rooms_alike{.min = 1, .max = static_cast<long long>(limits::rooms)};
 
 }  // namespace accepted
@@ -119,6 +167,77 @@ struct Fields<dataset::FlatSpec> {
       FIELD(sensor_height_m, NumberRange{.min = 0.1, .max = 5.0}, "of those in corners"),
       FIELD(sensor_tilt_deg, accepted::tilted_deg, "the same"),
       LABEL(where)};
+};
+template <>
+struct Fields<dataset::PlanPieceSpec> {
+  using S = dataset::PlanPieceSpec;
+  static constexpr const char* name = "plan_piece";
+  static constexpr std::tuple all{
+      FIELD(kind, "required; `kitchen`: a counter with stove and sink, a fridge at its end"),
+      FIELD(wall, "of the page, to which its back is; of a table, along which its long sides are"),
+      FIELD(x_m, accepted::on_page_m, "of the middle of its back, of a table's middle; without it where it fits"),
+      FIELD(y_m, accepted::on_page_m, "the same; at the `wall` where only the other one is given"),
+      FIELD(width_m, NumberRange{.min = 0.3, .max = 6.0},
+            "along its back, of a bed, kitchen, counter, stove, sink, fridge, wardrobe, desk, shelf"),
+      FIELD(places, IntegerRange{.min = 1, .max = 12}, "of a bed (1 or 2; default 1), a sofa, a table"),
+      LABEL(where)};
+};
+template <>
+struct Fields<dataset::PlanSensorSpec> {
+  using S = dataset::PlanSensorSpec;
+  static constexpr const char* name = "plan_sensor";
+  static constexpr std::tuple all{
+      FIELD(id, "default PIR_ and its room"),
+      FIELD(model, "default EKMC1601111 on the ceiling, EKMC1604111 else"),
+      FIELD(corner, "in which it hangs, and looks at the room's middle"),
+      FIELD(wall, "or on which, looking straight away; without both it looks down from the ceiling"),
+      FIELD(x_m, accepted::on_page_m, "on the wall or the ceiling; default its middle"),
+      FIELD(y_m, accepted::on_page_m, "the same"),
+      FIELD(height_m, NumberRange{.min = 0.1, .max = 10.0}, "above the floor, in a corner or on a wall"),
+      FIELD(tilt_deg, accepted::tilted_deg, "downwards, the same"),
+      FIELD(turned_deg, accepted::turned_deg, "to the left of where it looks by itself, seen from above"),
+      LABEL(where)};
+};
+template <>
+struct Fields<dataset::PlanRoomSpec> {
+  using S = dataset::PlanRoomSpec;
+  static constexpr const char* name = "plan_room";
+  static constexpr std::tuple all{
+      FIELD(id, "required; its area's name in rows"),
+      FIELD(kind, "required; by it the room is furnished if `furniture` is missing"),
+      FIELD(x_m, accepted::on_page_m,
+            "required; [left, right]: up to the middle of inner walls, to the face of outer ones"),
+      FIELD(y_m, accepted::on_page_m, "required; [bottom, top]"),
+      FIELD(area, "default its id; rooms of one area have no wall between them: an L-shaped room"),
+      FIELD(furniture),
+      FIELD(sensors),
+      LABEL(where)};
+};
+template <>
+struct Fields<dataset::PlanDoorSpec> {
+  using S = dataset::PlanDoorSpec;
+  static constexpr const char* name = "plan_door";
+  static constexpr std::tuple all{
+      FIELD(id, "default the room that it leads into, or `front`"),
+      FIELD(from, "room; without it the door leads in from outside"),
+      FIELD(into, "required; room, into which a leaf opens"),
+      FIELD(wall, "of the room that it leads into, of a door from outside"),
+      FIELD(x_m, accepted::on_page_m,
+            "of its middle, in a wall that runs left to right; default the middle of the wall"),
+      FIELD(y_m, accepted::on_page_m, "the same in a wall that runs up the page"),
+      FIELD(width_m, NumberRange{.min = 0.6, .max = 10.0}, "of the gap in the wall"),
+      FIELD(leaf,
+            "`none`, or as its [state](scene.md#doors); default `shut` from outside, `habit` into bedrooms and "
+            "baths, `none` else"),
+      FIELD(hinge, "as who goes through sees it; default at the nearer wall"),
+      LABEL(where)};
+};
+template <>
+struct Fields<dataset::HomePlanSpec> {
+  using S = dataset::HomePlanSpec;
+  static constexpr const char* name = "home_plan";
+  static constexpr std::tuple all{LABEL(name), FIELD(height_m, NumberRange{.min = 2.2, .max = 5.0}, "of the ceiling"),
+                                  FIELD(rooms), FIELD(doors), LABEL(where)};
 };
 template <>
 struct Fields<dataset::HouseholdRangesSpec> {

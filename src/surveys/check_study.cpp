@@ -361,11 +361,13 @@ void print_deaf_sensors(std::ostream& out, const WorkReport& work, const Model& 
 }
 
 void print(std::ostream& out, const WorkReport& work, const std::string& who, const Model& model) {
-  const std::size_t n_tried = work.seats.size(), n_seats = model.scene().seats.size();
+  const std::size_t n_places = model.scene().places.size();
+  const std::size_t n_tried = work.seats.size(), n_all = model.scene().seats.size() + n_places;
   if (n_tried == 0) return;
   const SeatsAtWork seats = work.by_any();
   out << "at work: " << who << ", for " << work.seconds << " s in each of "
-      << (n_tried < n_seats ? std::to_string(n_tried) + " of the " : "") << counted(n_seats, "seat") << ": noticed in "
+      << (n_tried < n_all ? std::to_string(n_tried) + " of the " : "") << counted(n_all, "seat")
+      << (n_places > 0 ? " and places, or at what else they are for" : "") << ": noticed in "
       << named(seats.noticed, n_tried) << "; deaf (seen, but never noticed) in " << named(seats.deaf, n_tried)
       << "; unseen in " << named(seats.unseen, n_tried) << '\n';
   print_deaf_sensors(out, work, model);

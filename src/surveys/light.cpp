@@ -871,7 +871,9 @@ std::vector<Issue> deaf_seats(const RuleSpec& rule, const Model& model) {
     };
     std::vector<std::string> unnoticed;
     for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
-      const SeatSpec& place = *std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);
+      const auto found = std::ranges::find(scene.seats, work.seats[seat], &SeatSpec::id);
+      if (found == scene.seats.end()) continue;  // to lie and to stand: who is there doesn't stay for hours, or sleeps
+      const SeatSpec& place = *found;
       if (!light.area.empty() && areas.name_at(floor_point(place.world_from_seat.origin)) != light.area) continue;
       bool is_noticed = false;
       for (std::size_t i = 0; i < scene.sensors.size(); ++i)

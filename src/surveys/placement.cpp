@@ -1,6 +1,7 @@
 #include "surveys/placement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/rt/room.hpp"
 #include "model/core/error.hpp"
 #include "model/schema/check_scene.hpp"
 #include "pirsim/look.hpp"
@@ -493,6 +495,93 @@ SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector
   return set;
 }
 
+namespace {
+
+struct PlaceInArea {
+  std::size_t area;
+  SensorSpec sensor;
+};
+
+/// Corners that point outwards, a hand off their walls, and the ceiling's middle.
+std::vector<PlaceInArea> places_in_areas(const SceneSpec& scene, const std::vector<std::string>& models) {
+  constexpr double off_corner_m = 0.1;  // assumed (0.06-0.15): outlines reach to the middle of walls
+  constexpr double corner_height_m = 2.2, tilt_deg = 20.0, below_ceiling_m = 0.02, highest_ceiling_m = 20.0;
+  const rt::Room room(scene.meshes);
+  const double floor_y = scene.floor.height_m();
+  std::vector<PlaceInArea> places;
+  const auto add = [&](std::size_t area, const Vec3& at, double yaw_deg, double tilt) {
+    for (const std::string& model : models)
+      places.push_back(
+          {area, {"PIR_" + scene.areas[area].id, model, mounted(at, yaw_deg, tilt), 1.0, scene.areas[area].id}});
+  };
+  for (std::size_t area = 0; area < scene.areas.size(); ++area) {
+    const FloorArea& outline = scene.areas[area].outline;
+    for (const std::vector<Vec2>& loop : outline.loops()) {
+      const Vec2 middle = std::accumulate(loop.begin(), loop.end(), Vec2(0.0)) / static_cast<double>(loop.size());
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec2 &before = loop[(i + loop.size() - 1) % loop.size()], &after = loop[(i + 1) % loop.size()];
+        const Vec2 at = loop[i] + off_corner_m * (glm::normalize(before - loop[i]) + glm::normalize(after - loop[i]));
+        if (outline.contains(at))
+          add(area, Vec3(at.x, floor_y + corner_height_m, at.y), degrees(heading_of(middle - at)), tilt_deg);
+      }
+      const Vec3f low(static_cast<float>(middle.x), static_cast<float>(floor_y + corner_height_m),
+                      static_cast<float>(middle.y));
+      const auto ceiling = room.first_hit({low, Vec3f(0, 1, 0)}, static_cast<float>(highest_ceiling_m));
+      if (!ceiling || !outline.contains(middle)) continue;
+      const double height = floor_y + corner_height_m + static_cast<double>(ceiling->distance) - below_ceiling_m;
+      add(area, Vec3(middle.x, height, middle.y), 0.0, 90.0);
+    }
+  }
+  return places;
+}
+
+/// Of seats and places, and of the floor's squares, those in an area that a sensor notices. The first of them count
+/// most.
+using NoticedInArea = std::array<std::size_t, 3>;
+
+}  // namespace
+
+SensorSetSpec best_in_each_area(const SceneSpec& scene, const PlacementSpec& spec,
+                                const std::vector<std::string>& models, unsigned threads, const Tried& tried) {
+  constexpr std::size_t at_once = 16;
+  if (scene.areas.empty()) throw Error(ErrorCode::input, Where{scene.name}, "one sensor in each area: it has no areas");
+  const Areas areas(scene);
+  std::map<std::string, std::size_t> area_of;
+  for (const SeatSpec& seat : scene.seats) area_of[seat.id] = areas.at(floor_point(seat.world_from_seat.origin));
+  for (const PlaceSpec& place : scene.places) area_of[place.id] = areas.at(floor_point(place.world_from_place.origin));
+  const std::vector<PlaceInArea> places = places_in_areas(scene, models);
+  std::vector<std::pair<NoticedInArea, std::optional<std::size_t>>> best(scene.areas.size());
+  for (std::size_t first = 0; first < places.size(); first += at_once) {
+    SensorSetSpec set;
+    for (std::size_t i = first; i < std::min(first + at_once, places.size()); ++i)
+      set.sensors.push_back(places[i].sensor);
+    for (std::size_t i = 0; i < set.sensors.size(); ++i) set.sensors[i].id += '_' + std::to_string(i);
+    const CoverageStudy study = study_of(scene, spec.coverage, set);
+    const CoverageMap map = run_coverage(study, threads);
+    const WorkReport work =
+        spec.by == PlacementAim::seats ? watch_workers(study, SeatsTried::all, threads) : WorkReport{};
+    for (std::size_t i = 0; i < set.sensors.size(); ++i) {
+      const std::size_t area = places[first + i].area;
+      NoticedInArea noticed{};
+      for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
+        if (area_of.at(work.seats[seat]) != area) continue;
+        noticed[0] += work.notice(seat, i).seconds > 0 ? 1 : 0;
+        noticed[1] += work.notice(seat, i).is_sure() ? 1 : 0;
+      }
+      for (std::size_t row = 0; row < map.grid.n_rows(); ++row) {
+        for (std::size_t column = 0; column < map.grid.n_columns(); ++column)
+          if (map.count(column, row, i) > 0 && areas.at(map.grid.centre(column, row)) == area) ++noticed[2];
+      }
+      if (!best[area].second || noticed > best[area].first) best[area] = {noticed, first + i};
+      tried();
+    }
+  }
+  SensorSetSpec set{"one in each area", {}};
+  for (const auto& [noticed, which] : best)
+    if (which) set.sensors.push_back(places[*which].sensor);
+  return set;
+}
+
 Cover cover_of(const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search,
                const std::vector<double>& shares, unsigned threads, const Tried& tried) {
   constexpr std::size_t at_once = 16;  // sensors: they share the sitter's movements, and memory stays small
@@ -542,7 +631,7 @@ std::vector<Issue> idle_keys(const SceneSpec& scene, const PlacementSpec& spec) 
 }
 
 void require_seats(const SceneSpec& scene, const PlacementSpec& spec) {
-  if (!scene.seats.empty()) return;
+  if (!scene.seats.empty() || !scene.places.empty()) return;
   Diagnostics faults;
   faults.error(spec.by_where, "by: seats: " + scene.name + " has no seat (by: area ranks by the floor that is seen)");
   faults.throw_if_errors();
@@ -573,13 +662,20 @@ void keep_the_better(PlacementSearch& search, PlacementAim by) {
 PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
   if (spec.by == PlacementAim::seats) require_seats(scene, spec);
   add_models(scene, spec, options);
+  for (const std::string& model : options.each_area) {
+    if (!scene.sensor_models.contains(model))
+      scene.sensor_models[model] = io::find_sensor_model(model, options.scene_file, options.scenes, {});
+  }
   PlacementReport report;
   const auto set_done = options.set_done ? options.set_done : [] {};
   const auto watch_people = [&](PlacementScore& score) {
     score.at_work = studies::seats_at_work(scene, spec, score.set, options.threads);
     if (spec.light) watch_light(scene, spec, options.threads, score, report.warnings);
   };
-  for (const SensorSetSpec& set : spec.sets) {
+  std::vector<SensorSetSpec> sets = spec.sets;
+  if (!options.each_area.empty())
+    sets.push_back(studies::best_in_each_area(scene, spec, options.each_area, options.threads, set_done));
+  for (const SensorSetSpec& set : sets) {
     report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
     watch_people(report.ranked.back());
     set_done();
@@ -600,6 +696,7 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
   report.ranked = studies::ranked(std::move(report.ranked), spec.by);
   report.text =
       studies::to_text(report.ranked, spec) + (report.search ? studies::to_text(*report.search, spec.by) : "");
+  if (!options.each_area.empty()) report.text += studies::to_text(sets.back());
   report.best = report.ranked.empty() ? std::move(scene) : studies::with_set(std::move(scene), report.ranked[0].set);
   return report;
 }

@@ -104,6 +104,8 @@ struct LightScore {
 /// A line that says what sets are ranked by, then one a set.
 [[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSpec& spec);
 [[nodiscard]] std::string to_text(const PlacementSearch& search, PlacementAim by);
+/// Which sensor hangs where.
+[[nodiscard]] std::string to_text(const SensorSetSpec& set);
 
 // Which few of many candidates do best together? A search knows how many there are, which one adds most to some, and
 // which of two choices is better.
@@ -189,6 +191,12 @@ using Tried = std::function<void()>;
 /// at_work and light of neither.
 [[nodiscard]] PlacementSearch search_placement(
     const SceneSpec& scene, const PlacementSpec& spec, const PlacementSearchSpec& search, unsigned threads = 0,
+    const Tried& tried = [] {});
+
+/// In each area one of these models, where it alone does best in that area by what the study ranks by (not false-offs):
+/// in a corner, tilted down by 20 degrees, or in the middle of the ceiling. Throws Error(input) without areas.
+[[nodiscard]] SensorSetSpec best_in_each_area(
+    const SceneSpec& scene, const PlacementSpec& spec, const std::vector<std::string>& models, unsigned threads = 0,
     const Tried& tried = [] {});
 
 /// Sensors at these shares, in [0, 1], of the lines' joint length.

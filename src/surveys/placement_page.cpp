@@ -241,16 +241,27 @@ std::string to_text(const std::vector<PlacementScore>& scores, const PlacementSp
   return out.str();
 }
 
+namespace {
+
+std::string place_of(const SensorSpec& sensor, const std::string& model) {
+  const Vec3 p = sensor.world_from_sensor.origin;
+  return "  " + sensor.id + model + "  " + fixed(p.x, 2) + ' ' + fixed(p.y, 2) + ' ' + fixed(p.z, 2) + '\n';
+}
+
+}  // namespace
+
 std::string to_text(const PlacementSearch& search, PlacementAim by) {
   std::ostringstream out;
   out << search.evaluations << gain(search, by)
-      << (search.gained ? "" : "; the search found nothing better than even spacing") << ". Sensors at:\n"
-      << std::fixed << std::setprecision(2);
-  for (const SensorSpec& sensor : search.found.set.sensors) {
-    const Vec3 p = sensor.world_from_sensor.origin;
-    out << "  " << sensor.id << "  " << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  }
+      << (search.gained ? "" : "; the search found nothing better than even spacing") << ". Sensors at:\n";
+  for (const SensorSpec& sensor : search.found.set.sensors) out << place_of(sensor, {});
   return out.str();
+}
+
+std::string to_text(const SensorSetSpec& set) {
+  std::string text = set.id + ":\n";
+  for (const SensorSpec& sensor : set.sensors) text += place_of(sensor, " (" + sensor.model + ")");
+  return text;
 }
 
 }  // namespace pirsim::studies

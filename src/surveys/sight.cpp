@@ -15,6 +15,7 @@
 #include "engine/sim/observer.hpp"
 #include "engine/sim/plan_people.hpp"
 #include "engine/sim/run_state.hpp"
+#include "engine/sim/schedule.hpp"
 #include "model/core/error.hpp"
 #include "model/core/parallel.hpp"
 #include "model/geom/floor.hpp"
@@ -35,19 +36,50 @@ constexpr double reach_s = 5.0;  // assumed: longer than the hands take to the t
 constexpr std::size_t most_seats = 30, most_pairs = 600;  // of seats and sensors: some ten seconds of one core
 constexpr std::size_t most_remembered = 1024;             // the metronome's work has some 600 postures
 
+/// A seat or a place, and what somebody does there.
+struct Spot {
+  enum class Doing { work, other } doing = Doing::work;
+  std::string id;
+  body::Motion motion;                 ///< settled there
+  std::optional<Activity> activity{};  ///< of natural style, unless it is work
+};
+
+/// What residents do there, by the first use of its mark.
+std::optional<Activity> activity_for(const std::string& use) {
+  for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
+    const sim::HomeManner manner = sim::manner_of(static_cast<sim::HomeActivity>(i));
+    if (std::ranges::find(manner.uses, use) != manner.uses.end()) return manner.activity;
+  }
+  return std::nullopt;
+}
+
+/// Lying on the back, or on the feet; none if the person can't get onto a bed of its height.
+std::optional<body::Motion> settled(const body::Humanoid& humanoid, const PlaceSpec& place, double floor_y,
+                                    double tick_s) {
+  const double heading = heading_of(place.world_from_place);
+  if (place.posture == PlacePosture::stand)
+    return body::Motion(humanoid, floor_point(place.world_from_place.origin), heading, floor_y, tick_s);
+  body::SeatPlace edge{{rotation_from_heading(heading + 0.5 * pi), place.world_from_place.origin}, floor_y, {}};
+  edge.world_from_seat.origin.y += body::edge_height_m(humanoid);
+  if (body::unfit_height(humanoid, edge)) return std::nullopt;
+  body::Motion motion = seated(humanoid, edge, tick_s);
+  motion.lie_down({place.world_from_place, edge});
+  while (motion.stage() != body::Stage::lying || !motion.settled()) motion.advance();
+  return motion;
+}
+
 /// The worker's body, tick by tick, as in a run.
-class SittingBody {
+class WatchedBody {
  public:
-  SittingBody(const WatchedRoom& room, const Worker& worker, const body::Humanoid& humanoid,
-              const body::SeatPlace& place)
+  WatchedBody(const WatchedRoom& room, const Worker& worker, const Spot& spot)
       : work_(worker.work),
-        activity_(facts_of(worker.work).activity),
-        motion_(seated(humanoid, place, room.array.tick_s())),
+        activity_(spot.doing == Spot::Doing::work ? facts_of(worker.work).activity : spot.activity),
+        motion_(spot.motion),
         restlessness_(worker.person.changes, room.seed, 0, 0, room.array.tick_s()),
         tilt_ticks_(std::max<std::int64_t>(1, std::llround(work_.tilt_every_s / room.array.tick_s()))) {
-    const bool is_natural = worker.person.style == MotionStyle::natural;
+    const bool is_natural = worker.person.style == MotionStyle::natural || spot.doing == Spot::Doing::other;
     if (is_natural) natural_.emplace(room.seed, 0, 0, room.sensing.tick_rate_hz);
-    motion_.work({is_natural ? 0.0 : work_.arm_amplitude_m, work_.arm_period_s});
+    if (spot.doing == Spot::Doing::work) motion_.work({is_natural ? 0.0 : work_.arm_amplitude_m, work_.arm_period_s});
   }
 
   void advance() {
@@ -57,7 +89,8 @@ class SittingBody {
     } else if (!tilts_deg.empty() && tick_ % tilt_ticks_ == 0) {
       motion_.tilt_spine(radians(tilts_deg[static_cast<std::size_t>(tick_ / tilt_ticks_) % tilts_deg.size()]));
     }
-    if (restlessness_.acts()) restlessness_.tick(motion_, natural_ ? nullptr : &work_);
+    if (restlessness_.acts() && motion_.stage() == body::Stage::seated)
+      restlessness_.tick(motion_, natural_ ? nullptr : &work_);
     motion_.advance();
     ++tick_;
   }
@@ -140,8 +173,8 @@ std::pair<std::size_t, std::size_t> channels_of(const WatchedRoom& room, std::si
 
 /// (n_sensors)
 std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int work_s, const body::Humanoid& humanoid,
-                              const body::SeatPlace& place) {
-  SittingBody body(room, worker, humanoid, place);
+                              const Spot& spot) {
+  WatchedBody body(room, worker, spot);
   const int rate = room.sensing.tick_rate_hz;
   for (int tick = 0; tick < reach_s * rate; ++tick) body.advance();
   PostureView view(room, worker, humanoid);
@@ -283,24 +316,35 @@ Worker worker_of(std::span<const sim::TrialModel> trials) {
 
 WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads, SeatsTried tried) {
   const body::Humanoid humanoid(worker.person);
-  const double floor_y = room.scene.floor.height_m();
-  const std::vector<SeatSpec>& seats = room.scene.seats;
+  const double floor_y = room.scene.floor.height_m(), tick_s = room.array.tick_s();
+  const std::size_t n_seats = room.scene.seats.size(), n_all = n_seats + room.scene.places.size();
   WorkReport report;
   report.seconds = worker.person.style == MotionStyle::natural ? natural_work_s : choreographed_work_s;
-  std::vector<body::SeatPlace> places;
+  std::vector<Spot> spots;
   const std::size_t most =
       tried == SeatsTried::all
-          ? seats.size()
+          ? n_all
           : std::clamp<std::size_t>(most_pairs / std::max<std::size_t>(1, room.scene.sensors.size()), 1, most_seats);
-  for (std::size_t i = 0, n = std::min(seats.size(), most); i < n; ++i) {
-    const SeatSpec& seat = seats[i * seats.size() / n];
+  for (std::size_t i = 0, n = std::min(n_all, most); i < n; ++i) {
+    const std::size_t which = i * n_all / n;
+    if (which >= n_seats) {
+      const PlaceSpec& place = room.scene.places[which - n_seats];
+      std::optional<body::Motion> motion = settled(humanoid, place, floor_y, tick_s);
+      if (!motion) continue;
+      const auto activity = place.uses.empty() ? std::nullopt : activity_for(place.uses.front());
+      spots.push_back({Spot::Doing::other, place.id, std::move(*motion), activity});
+      continue;
+    }
+    const SeatSpec& seat = room.scene.seats[which];
     const body::SeatPlace place{seat.world_from_seat, floor_y, sim::table_height(seat, floor_y, room.array.room())};
     if (body::unfit_height(humanoid, place)) continue;
-    report.seats.push_back(seat.id);
-    places.push_back(place);
+    const bool is_for_work = seat.uses.empty() || std::ranges::find(seat.uses, "work") != seat.uses.end();
+    spots.push_back({is_for_work ? Spot::Doing::work : Spot::Doing::other, seat.id, seated(humanoid, place, tick_s),
+                     is_for_work ? std::nullopt : activity_for(seat.uses.front())});
   }
+  for (const Spot& spot : spots) report.seats.push_back(spot.id);
   ordered_parallel<std::vector<WorkNotice>>(
-      places.size(), threads, [&](std::size_t i) { return watch(room, worker, report.seconds, humanoid, places[i]); },
+      spots.size(), threads, [&](std::size_t i) { return watch(room, worker, report.seconds, humanoid, spots[i]); },
       [&](std::vector<WorkNotice>& of_seat) {
         report.notices.insert(report.notices.end(), of_seat.begin(), of_seat.end());
       });

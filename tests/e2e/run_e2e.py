@@ -38,7 +38,7 @@ OTHERS = {("data",): (),
 # Of runs without a script.
 DAYS = "--staff", "--meetings", "--home", "--days", "--first-day", "--from", "--to", "--cleaning"
 FLAT_VALUES = {"--rooms": "2", "--residents": "1", "--size": "60", "--layout": "hall", "--sensors-at": "doorway",
-               "--mount": "ceiling", "--model": "EKMC1601111"}
+               "--mount": "ceiling", "--model": "EKMC1601111", "--plan": "my_flat.yaml"}
 ROOM_VALUES = {"--set": "l_shaped=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5", **FLAT_VALUES}
 VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--by-day": "days.csv", "--advised": "advised.yaml", "--by-hour": "hours.csv", "--format": ".csv",

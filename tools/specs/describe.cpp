@@ -276,6 +276,11 @@ int main() {
   print_keys<dataset::RoomSpec>();
   print_keys<dataset::SensorGroupSpec>();
   print_keys<dataset::FlatSpec>();
+  print_keys<dataset::HomePlanSpec>();
+  print_keys<dataset::PlanRoomSpec>();
+  print_keys<dataset::PlanPieceSpec>();
+  print_keys<dataset::PlanSensorSpec>();
+  print_keys<dataset::PlanDoorSpec>();
   print_keys<dataset::HouseholdRangesSpec>();
   print_keys<dataset::VariedEffectSpec>();
   print_keys<dataset::SplitSpec>();

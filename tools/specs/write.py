@@ -17,7 +17,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CLASSES = ROOT / "python/pirsim/specs.py"
-PAGES = [f"docs/formats/{page}.md" for page in ("control", "coverage", "dataset", "scene", "script", "sensor")]
+PAGES = [f"docs/formats/{page}.md" for page in ("control", "coverage", "dataset", "plan", "scene", "script", "sensor")]
 WIDTH = 120
 
 HEAD = '''"""Scenes and scripts as plain objects: read from files, changed, or made from nothing.

@@ -259,6 +259,53 @@ TEST_CASE("by seats, a scene without seats is refused where the study says so", 
   }
 }
 
+TEST_CASE("in each area hangs what sees most of it, of all corners, the ceiling and all models", "[placement]") {
+  SceneSpec scene = two_islands();
+  scene.seats.clear();
+  SensorModelSpec wide = scene.sensor_models.at("needle");
+  wide.id = "wide";
+  for (const double x : {-0.15, 0.15}) {
+    ZoneSpec zone = wide.clusters[0].zones[0];
+    for (Vec2& corner : zone.corners) corner.x += x;
+    wide.clusters[0].zones.push_back(zone);
+  }
+  scene.sensor_models["wide"] = wide;
+  TriMesh ceiling;
+  ceiling.positions = {{0, 2.6F, -1}, {9, 2.6F, -1}, {9, 2.6F, 1}, {0, 2.6F, 1}};
+  ceiling.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes.push_back(ceiling);
+  PlacementSpec spec = by_area();
+  spec.coverage.spacing_m = 0.25;
+  CHECK_THROWS_WITH(best_in_each_area(scene, spec, {"wide"}), contains("it has no areas"));
+
+  const std::vector<std::vector<Vec2>> islands = scene.floor.loops();
+  for (std::size_t i = 0; i < 2; ++i) scene.areas.push_back({i == 0 ? "west" : "east", FloorArea({islands[i]}, 0.0)});
+  const SensorSetSpec found = best_in_each_area(scene, spec, {"needle", "wide"});
+  REQUIRE(found.sensors.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    SceneSpec alone = scene;  // nothing else is looked at
+    alone.areas = {scene.areas[i]};
+    alone.floor = scene.areas[i].outline;
+    const auto seen_m2 = [&](const SensorSpec& sensor) {
+      return score(alone, spec.coverage, {"one", {sensor}}).seen_area_m2;
+    };
+    const Vec2 middle(i == 0 ? 1.5 : 7.5, 0.0);
+    std::vector<Frame> places{mounted({middle.x, 2.58, 0.0}, 0, 90)};
+    for (const double x : {-0.4, 0.4})
+      for (const double z : {-0.4, 0.4})
+        places.push_back(mounted({middle.x + x, 2.2, z}, degrees(heading_of(Vec2(-x, -z))), 20));
+    double best = 0.0, best_of_needles = 0.0;
+    for (const Frame& place : places) {
+      best = std::max(best, seen_m2({"A", "wide", place}));
+      best_of_needles = std::max(best_of_needles, seen_m2({"A", "needle", place}));
+    }
+    REQUIRE(best_of_needles < best);
+    CHECK(found.sensors[i].area == scene.areas[i].id);
+    CHECK(found.sensors[i].model == "wide");
+    CHECK(seen_m2(found.sensors[i]) == Approx(best));
+  }
+}
+
 TEST_CASE("a mounted sensor looks along its yaw, tilted down", "[placement]") {
   const Frame frame = mounted({1, 2, 3}, 90.0, 30.0);
   CHECK(glm::distance(frame.forward(), Vec3(-std::cos(radians(30.0)), -0.5, 0.0)) < 1e-12);
