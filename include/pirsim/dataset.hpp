@@ -44,6 +44,7 @@ struct HouseholdRangesSpec {
   Range age_years{25.0, 80.0};  ///< of each
   Range visits_a_week{0.0, 2.0};
   Range shift_min{-45.0, 45.0};  ///< by how much all clocks of a household are later than those below
+  double cat = 0.0, dog = 0.0;   ///< probabilities that there is one
   HouseholdSpec usual;           ///< its clocks; the rest is drawn
 };
 

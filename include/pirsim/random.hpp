@@ -37,6 +37,7 @@ enum class Purpose : std::uint32_t {
   home_day = 26,           ///< when a resident gets up, what they do and how long
   home_meals = 27,         ///< when a household eats, who cooks, when a visitor comes
   door_habit = 28,         ///< after which passes a door is shut at once
+  pet = 32,                ///< when a pet roams, where to and where it rests
   schedule_warmth = 31,    ///< clothes, sleeves, hair and skin of the people of a schedule
   home_errands = 32,       ///< what a resident gets up for, where they go at home and how long they stop there
   home_restlessness = 33,  ///< how much longer than others a resident stays seated; the same on all days
@@ -68,6 +69,7 @@ enum class Purpose : std::uint32_t {
   flat_household = 408,  ///< how many people live in a flat, what they do, how old they are, their habits
   room_ambient = 409,    ///< how warm a room is
   day_ambient = 410,     ///< how much warmer one of its days
+  home_pets = 411,       ///< which pets a home has
   // Of light, from 500 on.
   drawn_days = 500,    ///< days drawn with replacement, for intervals over days
   drawn_people = 501,  ///< who may have been there, by a counter; run: which draw

@@ -24,9 +24,9 @@ struct SensorSpec {
 };
 
 /// What people do at a place, as marks say in `for`. Nothing is simulated by it; who sends people there goes by it.
-inline constexpr std::array<const char*, 15> place_uses{"sleep",  "rest",   "tv",    "read",   "work",
-                                                        "meet",   "phone",  "eat",   "cook",   "wash",
-                                                        "toilet", "shower", "dress", "chores", "play"};
+inline constexpr std::array<const char*, 16> place_uses{"sleep", "rest",   "tv",   "read", "work",   "meet",
+                                                        "phone", "eat",    "cook", "wash", "toilet", "shower",
+                                                        "dress", "chores", "play", "pet"};
 
 /// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up. A seat is a place to sit.
 struct SeatSpec {

@@ -186,6 +186,19 @@ struct PersonSpec {
   std::vector<ScriptedAction> actions;
 };
 
+enum class PetKind { cat, dog };
+
+/// An animal of the household or the office: rests, roams in bouts, gets onto furniture if it is a cat. Nobody counts
+/// it, and it opens no doors. Sizes that are left out are the kind's usual ones (docs/physics/pets.md).
+struct PetSpec {
+  std::string id;
+  PetKind kind = PetKind::cat;
+  std::optional<double> height_m;  ///< of the back, standing
+  std::optional<double> length_m;  ///< nose to rump
+  std::optional<double> mass_kg;
+  Where where;
+};
+
 /// One choreography; a study runs every trial once per replicate.
 struct TrialSpec {
   std::string id;                            ///< as the output names it, "S1"
@@ -193,6 +206,7 @@ struct TrialSpec {
   std::optional<double> duration_s{};        ///< of a run; none: until all subjects have carried out all actions
   std::optional<ScheduleSpec> schedule{};    ///< adds people whose actions are drawn anew for every run
   std::optional<OccupancySpec> occupancy{};  ///< adds people who are there as data say
+  std::vector<PetSpec> pets{};               ///< move by themselves
 };
 
 struct ScriptSpec {

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Clock", "Cluster", "Comparator", "Counts",
     "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
-    "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person",
+    "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Pet",
     "Place", "Places", "Point2", "Point3", "Positions", "RatedTarget", "Report", "Resident", "Rise", "Scene",
     "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensitivity", "Sensor", "SensorModel", "Sit", "Staff",
     "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
@@ -730,6 +730,22 @@ class Occupancy:
 
 
 @dataclass(slots=True)
+class Pet:
+    """An animal that moves by itself; nobody counts it."""
+
+    id: str = ""
+    """Default: its kind."""
+    kind: Literal["cat", "dog"] = "cat"
+    height_m: float | None = None
+    """Of the back, standing; none: as the kind usually is."""
+    length_m: float | None = None
+    """Nose to rump; the same."""
+    mass_kg: float | None = None
+    """The same."""
+    where: Where = _where()
+
+
+@dataclass(slots=True)
 class Trial:
     """One choreography; a study runs every trial once per replicate."""
 
@@ -741,6 +757,8 @@ class Trial:
     """Of a run; none: until everybody has carried out all actions."""
     schedule: Schedule | None = None
     occupancy: Occupancy | None = None
+    pets: list[Pet] = field(default_factory=list)
+    """Move by themselves."""
 
     def __repr__(self) -> str:
         return _spec_parts.trial_text(self)

@@ -94,6 +94,18 @@ ScheduleSpec schedule_of(const RecipeSpec& recipe, const SceneSpec& scene, int r
   return schedule;
 }
 
+std::vector<PetSpec> pets_of(const RecipeSpec& recipe, int room) {
+  const RoomGroupSpec& group = group_of(recipe, room);
+  std::vector<PetSpec> pets;
+  if (!group.home) return pets;
+  Stream stream({recipe.seed, word(recipe.original_of(room)), 0, Purpose::home_pets});
+  const HouseholdRangesSpec& household = group.home->household;
+  for (const auto& [kind, chance] : {std::pair(PetKind::cat, household.cat), {PetKind::dog, household.dog}}) {
+    if (stream.uniform() < chance) pets.push_back({word_of(kind), kind, {}, {}, {}, {}});
+  }
+  return pets;
+}
+
 /// Of the room on this day; to a hundredth of a degree, so that scripts are good to read.
 double ambient_of(const RecipeSpec& recipe, int room, int day) {
   const std::optional<Range>& range = group_of(recipe, room).ambient_c;
@@ -266,6 +278,7 @@ ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room,
   TrialSpec& trial = script.trials.emplace_back();
   trial.id = "day";
   trial.schedule = schedule_of(recipe, scene, room);
+  trial.pets = pets_of(recipe, room);
   add_effects(recipe, scene, room, day, script);
   return script;
 }

@@ -251,6 +251,8 @@ struct Fields<dataset::HouseholdRangesSpec> {
             "evenings on which somebody comes"),
       FIELD(shift_min, NumberRange{.min = -120.0, .max = 120.0},
             "by how much all clocks of a household are later than its usual ones"),
+      FIELD(cat, accepted::probability, "probability that they have a [cat](../physics/pets.md)"),
+      FIELD(dog, accepted::probability, "the same of a dog"),
       FIELD(usual)};
 };
 template <>

@@ -535,7 +535,8 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
     std::vector<PosedShape> shapes;
     sim::append_solids(actors[person], shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i), person)});
+      solids.push_back(
+          {shapes[i], actors[person].is_pet() ? shirt_of(person) : colour_of(static_cast<body::Part>(i), person)});
   }
   const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
   const std::span<const LeafStep> steps = state.run_state().crowd.doors().steps();

@@ -420,6 +420,10 @@ bool Motion::settled() const noexcept {
 }
 
 const Posture& Poser::posture(const Outline& outline) noexcept {
+  if (humanoid_->animal()) {
+    renewed_ = (1U << n_parts) - 1U;
+    return posture_ = posture_of(*humanoid_->animal(), outline);
+  }
   const Limbs changed = begun_ ? changes(outline_, outline) : Limbs{};
   begun_ = true;
   outline_ = outline;
@@ -512,7 +516,13 @@ LyingOutline Motion::lying_outline() const noexcept {
           channel(Channel::curl).value()};
 }
 
+void Motion::pose_as(const Outline& outline) noexcept {
+  posed_ = outline;
+  stance_.pelvis = outline.pelvis;
+}
+
 Outline Motion::outline() const noexcept {
+  if (posed_) return *posed_;
   Outline outline;
   outline.pelvis = stance_.pelvis;
   outline.feet = stance_.feet;
@@ -566,6 +576,7 @@ void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const 
 }
 
 Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
+  if (humanoid.animal()) return posture_of(*humanoid.animal(), outline);
   Pose pose;
   update(pose, humanoid, outline, {});
   return posture_of(humanoid, pose);

@@ -64,6 +64,9 @@ struct Outline {
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
+/// By the pelvis, which is the middle of the trunk, the floor's height, `fall`, 1 where it lies, and `hand_ahead_m` of
+/// either diagonal pair of paws alone.
+[[nodiscard]] Posture posture_of(const AnimalMeasures& animal, const Outline& outline) noexcept;
 
 /// How somebody walks, sits down and rises. Defaults: the paper's steps (of a stature of 1.86 m), times `assumed`
 /// (0.8-2 s).
@@ -121,6 +124,8 @@ class Motion {
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
   void halt() noexcept;  ///< a walker stands still at once, in mid-stride
+  /// From now on it is as this says: of a body that is moved from outside.
+  void pose_as(const Outline& outline) noexcept;
 
   void advance();  ///< one tick
 
@@ -217,6 +222,8 @@ class Motion {
   // Lying.
   LyingPlace bed_;
   MinJerk lying_;  ///< 0 on the edge, 1 lying
+
+  std::optional<Outline> posed_;  ///< of who is moved from outside
 };
 
 // Postures that follow upon one another: only what has moved is worked out anew.

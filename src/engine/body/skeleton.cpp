@@ -88,12 +88,6 @@ constexpr std::size_t at(Part left, std::size_t side) { return at(left) + side; 
 /// The pelvis capsule's Y points to the person's right.
 Quat hips_from_pelvis() { return {std::numbers::sqrt2 / 2, 0.0, 0.0, -std::numbers::sqrt2 / 2}; }
 
-/// Rotation whose Y is `up` and whose X is as near to `right` as that allows. Both are unit vectors.
-Quat rotation_of(const Vec3& right, const Vec3& up) {
-  const Vec3 x = glm::normalize(right - glm::dot(right, up) * up);
-  return glm::normalize(glm::quat_cast(glm::dmat3(x, up, glm::cross(x, up))));
-}
-
 double torso_centre(const Humanoid& humanoid) {
   // The box ends where the head's sphere begins.
   const Measures& m = humanoid.measures();
@@ -141,6 +135,11 @@ void put_foot(const Measures& m, const Frame& ankle, std::size_t side, Posture& 
 }
 
 }  // namespace
+
+Quat rotation_of(const Vec3& right, const Vec3& up) {
+  const Vec3 x = glm::normalize(right - glm::dot(right, up) * up);
+  return glm::normalize(glm::quat_cast(glm::dmat3(x, up, glm::cross(x, up))));
+}
 
 std::string_view name(Part part) noexcept { return body_part_names[at(part)]; }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <string_view>
 
 #include "pirsim/geometry.hpp"
@@ -71,11 +72,28 @@ struct Measures {
   bool operator==(const Measures&) const = default;
 };
 
+/// Of a cat or a dog, metres (animal.cpp).
+struct AnimalMeasures {
+  double axis_height_m = 0.0;  ///< of the trunk's middle, standing
+  double half_trunk_m = 0.0;   ///< from its middle to where the round ends begin
+  double trunk_radius_m = 0.0, head_radius_m = 0.0, leg_radius_m = 0.0;
+  double leg_m = 0.0;  ///< stretched
+  bool operator==(const AnimalMeasures&) const = default;
+};
+[[nodiscard]] AnimalMeasures measures_of(const PetSpec& pet);
+/// Each is called as the part of a person that corresponds to it: forelegs are arms.
+[[nodiscard]] Solids solids_of(const AnimalMeasures& animal);
+/// Of a pet's coat, all over.
+[[nodiscard]] double coat_c(double ambient_c) noexcept;
+
 class Humanoid {
  public:
   /// Throws Error(usage) for a mesh of a part that there is not.
   explicit Humanoid(const PersonSpec& person);
+  /// A pet has an animal's solids and postures; what else is asked of it is that of somebody as high.
+  explicit Humanoid(const PetSpec& pet);
   [[nodiscard]] const Measures& measures() const noexcept { return measures_; }
+  [[nodiscard]] const std::optional<AnimalMeasures>& animal() const noexcept { return animal_; }
   /// What rays are traced against: the primitives, or the person's meshes where there are any.
   [[nodiscard]] const Solids& solids() const noexcept { return solids_; }
   /// Spheres, capsules and boxes only: what kinematics reckons with, whatever the person looks like.
@@ -99,6 +117,7 @@ class Humanoid {
 
  private:
   Measures measures_;
+  std::optional<AnimalMeasures> animal_;
   Solids primitives_;
   Solids solids_;
   double clearance_radius_m_ = 0.0;
@@ -128,6 +147,9 @@ struct ElbowCircle {
   const ElbowCircle circle = elbow_circle(root, end, upper, lower);
   return circle.centre + circle.radius * glm::normalize(pole - glm::dot(pole, circle.axis) * circle.axis);
 }
+
+/// Rotation whose Y is `up` and whose X is as near to `right` as that allows. Both are unit vectors.
+[[nodiscard]] Quat rotation_of(const Vec3& right, const Vec3& up);
 
 /// Shoulder (ball) and elbow (hinge). The upper arm's frame has its origin in the shoulder and its Y towards it from
 /// the elbow; the elbow bends about X, positive forward.

@@ -211,7 +211,7 @@ Effect second_person() {
       .settle = settle_second_person};
 }
 
-// warm_object: something warm moves that is no person: a pet, a robot, a fan.
+// warm_object: something warm moves that is no person and no pet (sim/pet.hpp): a robot, a fan.
 
 constexpr double object_clear_m = 0.3;
 
@@ -257,14 +257,13 @@ Effect warm_object() {
       .info = {.name = "warm_object",
                .family = Family::environment,
                .stage = "placement",
-               .summary =
-                   "Something warm moves: it roams from one free place to the next, as a pet or a robot does, or "
-                   "sweeps in place, as a fan or a curtain over a radiator.",
+               .summary = "Something warm moves: it roams from one free place to the next, as a robot does, or "
+                          "sweeps in place, as a fan or a curtain over a radiator.",
                .fingerprint = "ones that have to do with a place and not with the person",
                .confused_with = {"trigger_bursts", "second_person", "false_triggers"},
                .parameters =
                    {whether("present", "assumed"), place_coordinate("x_m"), place_coordinate("z_m"),
-                    detail("height_m", "m", 0.3, 0.2, 1.2, 0.1, 3.0, "assumed: a cat's to a stand fan's"),
+                    detail("height_m", "m", 0.3, 0.2, 1.2, 0.1, 3.0, "assumed: a robot's to a stand fan's"),
                     detail("speed_m_s", "m/s", 0.3, 0.1, 0.6, 0.02, 2.0, "assumed: a robot's 0.3, a cat's walk 0.6"),
                     detail("every_s", "s", 10.0, 1.0, 60.0, 0.0, 3600.0, "assumed: rests so long at a place",
                            {"moves", "roams"}),

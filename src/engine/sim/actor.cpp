@@ -45,6 +45,7 @@ Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person
   if (this->person().spec.style == MotionStyle::natural) {
     natural_.emplace(study.seed(), run, person, study.sensing().tick_rate_hz);
   }
+  if (this->person().spec.pet) pet_.emplace(study, run, person);
 }
 
 std::string_view Actor::current_phase() const noexcept {
@@ -70,6 +71,11 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
 }
 
 void Actor::begin(const CompiledStudy& study, const Others& others) {
+  if (pet_) {
+    const body::Outline outline = pet_->outline();
+    body_.emplace(study, person(), index_, outline.pelvis.position, outline.pelvis.heading);
+    return body_motion().pose_as(outline);
+  }
   if (done() || action().at_s.value_or(0.0) > 0.0) return;
   const ActionFacts facts = facts_of(action().what);
   const bool is_led = facts.follows != nullptr;
@@ -114,6 +120,10 @@ DoorUser Actor::door_user(const FloorArea& floor, const Vec2& before) const {
 
 void Actor::advance(const CompiledStudy& study, std::int64_t tick, const Others& others, const DoorsSeen& doors) {
   incidents_.clear();
+  if (pet_) {
+    pet_->advance(study, tick - 1, others, doors);
+    return body_motion().pose_as(pet_->outline());
+  }
   carry_on({study, others, tick - 1, doors});
   if (body_) {
     if (natural_) move_naturally();
@@ -610,7 +620,8 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : doors_(study, run)
   seated_.resize(n_people, 0);
   for (std::size_t i = 0; i < n_people; ++i) {
     actors_[i].begin(study, {in_scene_, in_scene_.size(), Others::Me::not_there});
-    if (n_people > 1 && actors_[i].present()) in_scene_.push_back(actors_[i].presence());  // of one nobody asks
+    if (n_people > 1 && actors_[i].present() && !actors_[i].is_pet())
+      in_scene_.push_back(actors_[i].presence());  // of one nobody asks
   }
 }
 
@@ -653,7 +664,7 @@ void Crowd::turn_leaves(const CompiledStudy& study, std::int64_t tick) {
   door_users_.clear();
   for (std::size_t i = 0; i < actors_.size(); ++i) {
     const Actor& actor = actors_[i];
-    if (!actor.present()) {
+    if (!actor.present() || actor.is_pet()) {
       places_[i].reset();
       continue;
     }
@@ -665,9 +676,14 @@ void Crowd::turn_leaves(const CompiledStudy& study, std::int64_t tick) {
 }
 
 /// One after the other: those before a person in the script have been advanced already. Who comes or goes is seldom.
+/// Pets see people; people don't mind pets.
 void Crowd::advance_among_others(const CompiledStudy& study, std::int64_t tick) {
   std::size_t n_before = 0;
   for (Actor& actor : actors_) {
+    if (actor.is_pet()) {
+      actor.advance(study, tick, {in_scene_, n_before, Others::Me::not_there}, doors_.seen(study));
+      continue;
+    }
     const bool was_there = actor.present();
     const auto me = was_there ? Others::Me::among_them : Others::Me::not_there;
     actor.advance(study, tick, {in_scene_, n_before, me}, doors_.seen(study));

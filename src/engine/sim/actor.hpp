@@ -14,6 +14,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "engine/sim/natural_motion.hpp"
 #include "engine/sim/pedestrian.hpp"
+#include "engine/sim/pet.hpp"
 #include "engine/sim/schedule.hpp"
 #include "model/schema/actions.hpp"
 #include "model/schema/words.hpp"
@@ -36,6 +37,7 @@ class Actor {
   void advance(const CompiledStudy& study, std::int64_t tick, const Others& others, const DoorsSeen& doors);
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
+  [[nodiscard]] bool is_pet() const noexcept { return pet_.has_value(); }
   /// Is it a person over this floor area?
   [[nodiscard]] bool counts_on(const FloorArea& floor) const;
   [[nodiscard]] bool done() const noexcept { return action_ == actions().size(); }
@@ -187,6 +189,7 @@ class Actor {
   std::optional<Pedestrian> body_;  ///< while in the scene
   Attention attention_;
   std::optional<NaturalMotion> natural_;  ///< of who is of that style
+  std::optional<Pet> pet_;                ///< moves the body, whatever the script
   std::size_t action_ = 0;                ///< index of the current action
   bool begun_ = false;                    ///< the current action has begun
   ActionFacts facts_;                     ///< of the current action; of none unless it has begun

@@ -216,6 +216,13 @@ BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
   return radiance;
 }
 
+BodyRadiance radiance_of(const PersonInForce& body, double ambient_c) {
+  if (!body.pet) return radiance_of(body.warmth, ambient_c);
+  BodyRadiance radiance{};
+  radiance.fill(pir::band_radiance(pir::kelvin(body::coat_c(ambient_c))));
+  return radiance;
+}
+
 bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) {
   return std::ranges::any_of(
       scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });

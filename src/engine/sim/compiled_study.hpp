@@ -78,6 +78,7 @@ class PowerModel {
 };
 
 [[nodiscard]] BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c);
+[[nodiscard]] BodyRadiance radiance_of(const PersonInForce& body, double ambient_c);
 
 /// One make of sensor, calibrated by its rated distances (pir::calibrate) through the lens as it was made: what blurs
 /// it later leaves the gain as it is.
@@ -240,7 +241,24 @@ struct LyingPlan {
   SeatPlan edge;  ///< its place is that of the bed
 };
 
-/// One person of one trial.
+/// Where people wait and come into being who come in by it.
+[[nodiscard]] inline Vec2 outside_of(const EntranceSpec& door) {
+  return floor_point(door.world_from_entrance * Vec3(0, 0, door.outside_m));
+}
+
+/// Where a pet may get onto, from the floor before it.
+struct Perch {
+  std::string id;  ///< of the seat or the place
+  Vec2 before{0.0};
+  Vec3 top{0.0};
+};
+/// Where a pet gets to.
+struct Haunts {
+  Vec2 home{0.0};  ///< on the part of the floor that it never leaves
+  std::vector<Perch> perches;
+};
+
+/// One person of one trial, or a pet.
 struct PersonModel {
   PersonInForce spec;
   body::Humanoid humanoid;
@@ -255,6 +273,7 @@ struct PersonModel {
   [[nodiscard]] bool can_use(std::string_view seat) const { return seats.contains(seat); }
   [[nodiscard]] const SeatPlan& seat_plan(std::string_view seat) const { return seats.find(seat)->second; }
   BodyRadiance radiance{};
+  Haunts haunts{};  ///< of a pet
 };
 
 using TrialModel = TrialOf<PersonModel>;

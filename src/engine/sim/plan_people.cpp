@@ -13,6 +13,7 @@
 
 #include "engine/body/seating.hpp"
 #include "engine/sim/occupancy.hpp"
+#include "engine/sim/pet.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/actions.hpp"
 #include "model/schema/fields.hpp"
@@ -335,11 +336,14 @@ std::vector<std::string> entrances_used(const TrialInForce& trial) {
   return trial.schedule ? trial.schedule->entrances : std::vector<std::string>{};
 }
 
+body::Humanoid body_of(const PersonInForce& spec) {
+  return spec.pet ? body::Humanoid(*spec.pet) : body::Humanoid(spec);
+}
+
 double widest_clearance_m(const std::vector<TrialInForce>& trials) {
   double widest_m = 0.0;
   for (const TrialInForce& trial : trials) {
-    for (const PersonInForce& spec : trial.people)
-      widest_m = std::max(widest_m, body::Humanoid(spec).clearance_radius_m());
+    for (const PersonInForce& spec : trial.people) widest_m = std::max(widest_m, body_of(spec).clearance_radius_m());
   }
   return widest_m;
 }
@@ -365,8 +369,20 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
     TrialModel& planned = planned_trials.emplace_back(
         TrialModel{trial.id, {}, trial.duration_s, trial.schedule, trial.clock, trial.begins_s, trial.occupancy});
+    const auto n_people = std::ranges::count_if(trial.people, [](const PersonInForce& spec) { return !spec.pet; });
     for (const PersonInForce& spec : trial.people) {
-      body::Humanoid humanoid(spec);
+      const body::Humanoid humanoid = body_of(spec);
+      if (spec.pet) {
+        const auto& floor = floor_with(humanoid.clearance_radius_m());
+        const std::optional<Haunts> haunts = haunts_of(*spec.pet, scene, *floor);
+        if (!haunts) diagnostics.error(spec.pet->where, "pet '" + spec.id + "' finds no way about " + scene.name);
+        planned.people.push_back({.spec = spec,
+                                  .humanoid = humanoid,
+                                  .floor = floor,
+                                  .radiance = radiance_of(spec, study.sensing().ambient_c),
+                                  .haunts = haunts.value_or(Haunts{})});
+        continue;
+      }
       double clearance_m = humanoid.clearance_radius_m();
       if (planned.people.size() < written.size()) {
         clearance_m = std::min(clearance_m, body::Humanoid(written[planned.people.size()]).clearance_radius_m());
@@ -375,7 +391,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
         PersonModel person{.spec = spec,
                            .humanoid = humanoid,
                            .floor = floor_with(keep_m),
-                           .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
+                           .radiance = radiance_of(spec, study.sensing().ambient_c)};
         Rehearsal(scene, room, person, grounds, found).run(entrances_used(trial));
         return person;
       };
@@ -387,7 +403,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
       } else {
         for (const Issue& issue : found.issues()) diagnostics.error(issue.where, issue.message);
       }
-      if (trial.people.size() > 1) {
+      if (n_people > 1) {
         person.narrow_floor = floor_with(std::min(person.floor->clearance_m(), humanoid.half_width_m()));
       }
       planned.people.push_back(std::move(person));
@@ -443,7 +459,8 @@ auto fields(const PersonChanges& changes) {
 }
 
 bool same_person(const PersonInForce& a, const PersonInForce& b) {
-  return same<PersonSpec>(a, b) && fields(a.changes) == fields(b.changes) && same_part(a.part, b.part);
+  const bool same_pet = a.pet && b.pet ? same(*a.pet, *b.pet) : a.pet.has_value() == b.pet.has_value();
+  return same<PersonSpec>(a, b) && fields(a.changes) == fields(b.changes) && same_part(a.part, b.part) && same_pet;
 }
 
 std::vector<const TriMesh*> solids(const SceneSpec& scene) {
@@ -476,7 +493,7 @@ bool same_trial(const TrialModel& planned, const TrialInForce& trial, double amb
   return planned.id == id && planned.duration_s == duration_s && same(planned.schedule, schedule) &&
          planned.clock == run_clock && planned.begins_s == begins_s && same_counts(planned.occupancy, occupancy) &&
          std::ranges::equal(planned.people, people, [&](const PersonModel& a, const PersonInForce& b) {
-           return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
+           return same_person(a.spec, b) && a.radiance == radiance_of(b, ambient_c);
          });
 }
 

@@ -28,6 +28,14 @@ void add_occupancy(const OccupancySpec& occupancy, const ScriptSpec& script, con
                                      entrances_of(occupancy, study.scene), occupancy.where};
 }
 
+PersonInForce in_force(const PetSpec& pet) {
+  PersonInForce animal;
+  animal.id = pet.id;
+  animal.changes.role = PersonRole::object;
+  animal.pet = pet;
+  return animal;
+}
+
 }  // namespace
 
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
@@ -39,11 +47,12 @@ StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
         TrialInForce{trial.id, {}, trial.duration_s, trial.schedule, clock_of(script, trial)});
     for (const PersonSpec& person : trial.people) own.people.push_back({person, {}, {}});
     if (trial.occupancy) add_occupancy(*trial.occupancy, script, study, own);
-    if (!trial.schedule) continue;
-    for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed)) {
-      own.people.push_back({scheduled.person, {}, scheduled});
+    if (trial.schedule) {
+      for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed))
+        own.people.push_back({scheduled.person, {}, scheduled});
+      own.duration_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));  // times are whole minutes
     }
-    own.duration_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));  // times are whole minutes
+    for (const PetSpec& pet : trial.pets) own.people.push_back(in_force(pet));
   }
   return study;
 }

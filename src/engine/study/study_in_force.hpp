@@ -97,6 +97,7 @@ struct PersonChanges {
 struct PersonInForce : PersonSpec {
   PersonChanges changes;
   std::optional<ScheduledPerson> part{};  ///< in the trial's schedule; its actions are drawn for each run
+  std::optional<PetSpec> pet{};           ///< is this animal, an object that moves by itself
 };
 
 /// An occupancy of counts, with what its runs and its room make of it.

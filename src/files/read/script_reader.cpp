@@ -219,6 +219,23 @@ void add_people_of_all(const TrialSpec& every_trial, std::vector<TrialSpec>& tri
   }
 }
 
+std::vector<PetSpec> read_pets(const std::vector<YamlNode>& nodes, Diagnostics& faults) {
+  std::vector<PetSpec> pets;
+  Names ids("pet");
+  for (const YamlNode& node : nodes) {
+    YamlMap map(node, faults, "pets");
+    PetSpec& pet = pets.emplace_back();
+    map.require("kind");
+    read_fields(map, pet);
+    pet.id = map.text("id", word_of(pet.kind));
+    pet.where = node.where();
+    const std::string fault = ids.fault_of_adding(pet.id);
+    if (!fault.empty()) faults.error(node.where(), fault);
+    map.finish();
+  }
+  return pets;
+}
+
 /// name: of the script, if it doesn't say; files: those that it may name.
 ScriptSpec script_of(const YamlNode& root, const std::string& name, const detail::FilesBeside& files) {
   Diagnostics faults;
@@ -238,8 +255,10 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const detail
   Surroundings around{BodyMeshReader(files), time_of(script, every_trial, faults)};
   script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);
   read_numbers(map, every_trial);
+  every_trial.pets = read_pets(map.list("pets", limits::list_entries), faults);
   for (TrialSpec& trial : script.trials) {
     if (!trial.duration_s) trial.duration_s = every_trial.duration_s;
+    trial.pets = every_trial.pets;
   }
   const auto& schedule = every_trial.schedule;
   if (schedule) warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);

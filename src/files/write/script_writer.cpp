@@ -189,6 +189,9 @@ std::string to_yaml(const ScriptSpec& script) {
   }
   if (!script.trials.empty() && script.trials.front().occupancy)
     root["occupancy"] = write(*script.trials.front().occupancy);
+  if (!script.trials.empty()) {
+    for (const PetSpec& pet : script.trials.front().pets) root["pets"].push_back(written(pet));
+  }
   const std::optional<RunClock> clock = clock_from(script.begin);
   for (const TrialSpec& trial : script.trials) {
     YAML::Node node;

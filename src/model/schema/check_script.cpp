@@ -113,6 +113,11 @@ class ScriptCheck {
     if (!faults_.few(path.field("people"), trial.people.size(), limits::people)) return;
     Names people("person");
     for (std::size_t i = 0; i < trial.people.size(); ++i) check_person(trial.people[i], path.item("people", i), people);
+    if (!faults_.few(path.field("pets"), trial.pets.size(), limits::list_entries)) return;
+    for (std::size_t i = 0; i < trial.pets.size(); ++i) {
+      check_id(trial.pets[i].id, path.item("pets", i), people);
+      faults_.fields(trial.pets[i], path.item("pets", i));
+    }
     if (trial.schedule) check(*trial.schedule, path.field("schedule"), faults_);
     if (trial.occupancy) check(*trial.occupancy, script_.begin, path.field("occupancy"), faults_);
   }

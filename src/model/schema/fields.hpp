@@ -425,6 +425,19 @@ struct Fields<SceneSpec> {
 // Fields of trials, of how they are sensed, and of what is known of them (schema/fields.hpp).
 
 template <>
+struct Fields<PetSpec> {
+  using S = PetSpec;
+  static constexpr const char* name = "Pet";
+  static constexpr const char* about = "An animal that moves by itself; nobody counts it.";
+  static constexpr std::tuple all{
+      FIELD(id, "default: its kind"),
+      FIELD(kind),
+      FIELD(height_m, NumberRange{.min = 0.1, .max = 1.0}, "of the back, standing; none: as the kind usually is"),
+      FIELD(length_m, NumberRange{.min = 0.2, .max = 1.5}, "nose to rump; the same"),
+      FIELD(mass_kg, NumberRange{.min = 1.0, .max = 90.0}, "the same"),
+      LABEL(where)};
+};
+template <>
 struct Fields<TrialSpec> {
   using S = TrialSpec;
   static constexpr const char* name = "Trial";
@@ -433,7 +446,9 @@ struct Fields<TrialSpec> {
                                   FIELD(people, "the first one's actions name the rows' phase"),
                                   FIELD(duration_s, NumberRange{.min = 1.0, .max = 1e7},
                                         "of a run; none: until everybody has carried out all actions"),
-                                  FIELD(schedule), FIELD(occupancy)};
+                                  FIELD(schedule),
+                                  FIELD(occupancy),
+                                  FIELD(pets, "move by themselves")};
 };
 template <>
 struct Fields<SensingSpec> {
@@ -824,7 +839,7 @@ using SpecsOfPython =
                action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn, action::Follow,
                action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
                HeldMeetingSpec, MeetingsSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec,
-               StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec,
-               EffectSpec, ScriptSpec>;
+               StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, PetSpec, TrialSpec, SensingSpec,
+               SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

@@ -126,6 +126,10 @@ struct Words<Occupation> {
       {{"works", Occupation::works}, {"at_home", Occupation::at_home}, {"works_at_home", Occupation::works_at_home}}};
 };
 template <>
+struct Words<PetKind> {
+  static constexpr WordList<PetKind, 2> all{{{"cat", PetKind::cat}, {"dog", PetKind::dog}}};
+};
+template <>
 struct Words<Severity> {
   static constexpr WordList<Severity, 2> all{{{"warning", Severity::warning}, {"error", Severity::error}}};
 };
