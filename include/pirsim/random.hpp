@@ -37,7 +37,7 @@ enum class Purpose : std::uint32_t {
   home_day = 26,           ///< when a resident gets up, what they do and how long
   home_meals = 27,         ///< when a household eats, who cooks, when a visitor comes
   door_habit = 28,         ///< after which passes a door is shut at once
-  pet = 32,                ///< when a pet roams, where to and where it rests
+  pet = 34,                ///< when a pet roams, where to and where it rests
   schedule_warmth = 31,    ///< clothes, sleeves, hair and skin of the people of a schedule
   home_errands = 32,       ///< what a resident gets up for, where they go at home and how long they stop there
   home_restlessness = 33,  ///< how much longer than others a resident stays seated; the same on all days

@@ -267,7 +267,7 @@ class SteppingSitter {
       : sitter_(person, body::Humanoid{PersonSpec{}}, seat),
         n_ticks_(n_ticks),
         humanoid_{PersonSpec{}},
-        radiance_(sim::radiance_of({}, 20.0)),
+        radiance_(sim::radiance_of(WarmthSpec{}, 20.0)),
         filter_(model.compiled().array().analog()->sensors().front()->silent_filter),
         meter_(model.compiled().array(), fastest_tracer),
         powers_(model.compiled().array().analog()->power().n_receivers()),
@@ -394,7 +394,7 @@ TEST_CASE("what a meter has looked at before changes nothing, a body of another 
   const auto& actors = state.run_state().crowd.actors();
   std::vector<PosedShape> solids;
   sim::append_solids(actors.front(), solids);
-  const sim::BodyRadiance at_20 = sim::radiance_of({}, 20.0), at_10 = sim::radiance_of({}, 10.0);
+  const sim::BodyRadiance at_20 = sim::radiance_of(WarmthSpec{}, 20.0), at_10 = sim::radiance_of(WarmthSpec{}, 10.0);
   const std::span<const LeafStep> no_doors;
   sim::PowerMeter used(array, fastest_tracer);
   const auto check_as_anew = [&](const auto&... what) {
