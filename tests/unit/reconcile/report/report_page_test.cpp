@@ -17,7 +17,7 @@ Location two_cells() {
   Location location;
   location.p = 0.01;
   location.n_simulated = 999;
-  location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
+  location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01, 7.0}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
   location.envelope = {{{"S1 PIR1 seconds", "seconds", "S1 PIR1"}, 2.0, 0.0, -1.0, 0.5, 0.01},
                        {mean_of("longest_gap"), -0.5, 0.0, -1.0, 1.0, 0.9}};
   return location;
