@@ -95,7 +95,7 @@ struct Deviation {
   std::string who = {};  ///< a sensor or a trial; empty: all sensors
   Part part = Part::main;
   double measured_s = 0.0, expected_s = 0.0;
-  double scatters = 0.0;  ///< by which it is off; a scatter is at least a row
+  double scatters = 0.0;  ///< by which it is off; a scatter is at least a row in each cell
 };
 /// What a number that data are turned into is of.
 struct FeatureName {

@@ -505,12 +505,28 @@ Edges alone_in_row(const DatasetRows& data) {
   return edges;
 }
 
+/// Rows in which two sensors would have motion if they knew nothing of each other, a pair at a time.
+double expected_pairs(const DatasetRows& data) {
+  double expected = 0.0;
+  for (const Series& run : data.runs) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
+      const auto n = static_cast<double>(counts_of({std::span(&run, 1), data.n_sensors}, sensor).n_ones);
+      sum += n;
+      squares += n * n;
+    }
+    expected += (sum * sum - squares) / (2.0 * static_cast<double>(std::max<std::size_t>(1, run.n_rows(data.n_sensors))));
+  }
+  return expected;
+}
+
 /// As if one telegram a row came through. Sensors that see little of each other's field may do that too.
 void find_one_at_a_time(const DatasetRows& data, std::span<const DatasetRows> pilot,
                         std::vector<DataFinding>& findings) {
   const Edges edges = alone_in_row(data);
   if (edges.n < fewest_edges || edges.n_alike < edges.n || pilot.empty()) return;
-  const double chance = log_chance(edges, greatest_of(pilot, [](const auto& d) { return alone_in_row(d).share(); }));
+  const double usual = greatest_of(pilot, [](const DatasetRows& d) { return alone_in_row(d).share(); });
+  const double chance = std::max(log_chance(edges, usual), -expected_pairs(data));
   if (chance > log_level) return;
   findings.push_back(
       {.what = What::one_at_a_time, .n_rows = edges.n, .chance = std::exp(chance), .is_impossible = false});

@@ -61,8 +61,8 @@ std::optional<Deviation> deviation_of(const StudyFrame& frame, const stats::Matr
   double squares = 0.0;
   for (const double seconds : simulated) deviation.expected_s += seconds / n;
   for (const double seconds : simulated) squares += (seconds - deviation.expected_s) * (seconds - deviation.expected_s);
-  deviation.scatters =
-      (deviation.measured_s - deviation.expected_s) / std::sqrt(squares / n + frame.window_s * frame.window_s);
+  const double a_row = frame.window_s * std::sqrt(static_cast<double>(cells.size())) / static_cast<double>(trials.size());
+  deviation.scatters = (deviation.measured_s - deviation.expected_s) / std::sqrt(squares / n + a_row * a_row);
   return deviation;
 }
 

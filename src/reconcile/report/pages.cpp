@@ -318,6 +318,8 @@ std::string in_plain_words(const std::string& statistic) {
                                                         {"tail_seconds", "motion after the main part"},
                                                         {"late_tail_seconds", "motion long after the main part"},
                                                         {"run_variance", "runs differ from one another"},
+                                                        {"joint_loss", "motion that two sensors lack at once"},
+                                                        {"loss_in_company", "motion lost beside other sensors"},
                                                         {"share_of_time", "how motion spreads over the time"},
                                                         {"together", "motion while another sensor moves"}};
   if (const auto found = words.find(statistic); found != words.end()) return found->second;

@@ -1,6 +1,7 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -9,6 +10,7 @@
 #include "engine/effects/catalogue.hpp"
 #include "model/core/text.hpp"
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/feature_map.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -109,6 +111,35 @@ std::string most_of_all(const Location& location) {
   return " Strongest " + there + ": " + (who.empty() ? "all sensors" : who) + " " + fixed(change, 0) + " % " +
          (measured_s < expected_s ? "less" : "more") + " (" + fixed(measured_s, 1) + " s with motion a trial, " +
          fixed(expected_s, 1) + " s expected).";
+}
+
+/// What the numbers of sensors together, and of one sensor or trial as a whole, say by themselves.
+std::string told_of_shared(const Outcome& outcome) {
+  const auto is_beyond = [&](const EnvelopeFeature& feature) { return feature.adjusted_p <= outcome.alpha; };
+  Names told;
+  for (const std::string_view statistic : {of_whole_sensor, of_whole_trial}) {
+    Names off;
+    std::size_t n = 0;
+    for (const EnvelopeFeature& feature : outcome.location.envelope) {
+      if (feature.name.statistic != statistic) continue;
+      ++n;
+      if (is_beyond(feature) && feature.observed > feature.median) off.push_back(feature.name.place);
+    }
+    if (off.empty() || 2 * off.size() > n) continue;  // most of them: it is no matter of one
+    told.push_back(enumerated(off, "and") + (off.size() == 1 ? " differs" : " differ") + " as a whole");
+  }
+  for (const EnvelopeFeature& feature : outcome.location.envelope) {
+    if (!is_beyond(feature)) continue;
+    const bool more = feature.observed > feature.median;
+    if (feature.name.statistic == name(TrialStatistic::joint_loss))
+      told.emplace_back(more ? "sensors are lost together" : "where two sensors should report, one of them is lost");
+    if (feature.name.statistic == name(TrialStatistic::loss_in_company) && more)
+      told.emplace_back("sensors are lost where others report, and hardly alone");
+  }
+  if (told.empty()) return {};
+  std::string text = joined(told, "; ") + ".";
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
 }
 
 std::string where(const Outcome& outcome) {
@@ -630,6 +661,7 @@ std::vector<std::string> details(const Outcome& outcome) {
       texts.emplace_back("None of the others that were tried beside it explains what is left.");
     if (applied && !look.passes()) texts.push_back("That is not all. " + in_words(look));
   }
+  if (std::string shared = told_of_shared(outcome); !shared.empty()) texts.push_back(std::move(shared));
   if (outcome.range_end) texts.push_back(told_of_end(*outcome.range_end));
   if (outcome.verification) texts.push_back(seen_on_held_out(outcome));
   if (outcome.residuals) texts.push_back(sentence(*outcome.residuals));

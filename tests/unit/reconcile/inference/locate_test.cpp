@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/core/text.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/feature_map.hpp"
 #include "support/catch.hpp"
@@ -62,6 +63,32 @@ TEST_CASE("the strongest deviation is told of the part of the trial and of those
   CHECK(all.measured_s < 0.3 * all.expected_s);
   CHECK((one.who == "B" && one.part == Deviation::Part::before));
   CHECK(std::abs(strongest(3, 1.0F).scatters) < 3.0);
+}
+
+TEST_CASE("a sensor of which one seat gains what another loses is told as a whole", "[reconcile]") {
+  StudyFrame frame{{"S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8"}, {"A", "B", "C"}, {}, 1.0};
+  Stream stream({4, 0, 0, Purpose::test});
+  const auto drawn = [&](double b_scatters) {
+    std::vector<float> row(n_statistics(frame), 0.0F);
+    const Statistics out(frame, std::span<float>(row));
+    for (std::size_t t = 0; t < frame.trials.size(); ++t) {
+      for (std::size_t s = 0; s < 3; ++s)
+        out.cell(t, s, CellStatistic::seconds) =
+            static_cast<float>(30.0 + 4.0 * stream.normal() * (s == 1 ? b_scatters : 1.0));
+    }
+    return row;
+  };
+  stats::Matrix<float> plain;
+  for (int i = 0; i < 499; ++i) plain.append_row(std::span<const float>(drawn(1.0)));
+  const FeatureMap map(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, all_trials(frame));
+  const auto told = [&](double b_scatters) {
+    Outcome outcome;
+    outcome.verdict = Verdict::none_in_catalogue;
+    outcome.location = locate(frame, map, plain, drawn(b_scatters), 0.05, {});
+    return joined(details(outcome), " ");
+  };
+  CHECK_THAT(told(3.5), contains("B differs as a whole") && !contains("A differs"));
+  CHECK_THAT(told(1.0), !contains("as a whole"));
 }
 
 TEST_CASE("features are finite and keep their places where some simulated datasets lack a trial", "[reconcile]") {

@@ -196,7 +196,7 @@ TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   CHECK_FALSE(says(page(), "of what can be closed"));
   CHECK(says(page(), "as near to the model as two of its own runs"));
   outcome.verification->closed = true;
-  CHECK(says(page(), "the simulation with what was applied agrees with the data."));
+  CHECK(says(page(), "the simulation with soft_zone_edges agrees with the data."));
   outcome.verification->noise_floor = outcome.verification->before.energy_score + 1.0;
   CHECK(says(page(), "was as near to these trials already"));
 }
