@@ -190,8 +190,8 @@ struct Verification {
   std::string placebo_effect;      ///< its name, in the first fold that has one
   std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
   std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
-  /// More of what can be closed is closed than where a family or several effects were told and weren't there (three wrong
-  /// and two right families, .15 and less; right names .28 and more).
+  /// Enough to tell a family or several effects. Chosen, and not tried on others: three wrong and two right ones had
+  /// .15 and less, right names .28 and more.
   [[nodiscard]] bool explains() const noexcept { return share_closed > 0.15; }
   bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
   bool refused = false;  ///< the plain model fails the global test on the held-out trials

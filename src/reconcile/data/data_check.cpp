@@ -486,10 +486,8 @@ void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<cons
   if (chance > log_level) return;
   if (greatest_of(pilot, [&](const DatasetRows& d) { return on_clock(changes_of(d), period).share(); }) > model_has_it)
     return;
-  findings.push_back({.what = What::polled,
-                      .n_rows = data.n_rows(),
-                      .every_s = period * frame.window_s,
-                      .chance = std::exp(chance)});
+  findings.push_back(
+      {.what = What::polled, .n_rows = data.n_rows(), .every_s = period * frame.window_s, .chance = std::exp(chance)});
 }
 
 /// Rows with any motion, and those of them in which one sensor alone has it.
@@ -515,7 +513,8 @@ double expected_pairs(const DatasetRows& data) {
       sum += n;
       squares += n * n;
     }
-    expected += (sum * sum - squares) / (2.0 * static_cast<double>(std::max<std::size_t>(1, run.n_rows(data.n_sensors))));
+    expected +=
+        (sum * sum - squares) / (2.0 * static_cast<double>(std::max<std::size_t>(1, run.n_rows(data.n_sensors))));
   }
   return expected;
 }

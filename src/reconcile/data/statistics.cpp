@@ -26,9 +26,9 @@ constexpr std::array<std::string_view, first_sixth> cell_names{
 constexpr auto first_slice = static_cast<std::size_t>(TrialStatistic::slice_1);
 constexpr std::size_t n_slices = n_trial_statistics - first_slice;
 constexpr std::array<std::string_view, first_slice> trial_names{
-    "lag_minus_4", "lag_minus_2", "lag_minus_1", "lag_0",      "lag_1",      "lag_2",        "lag_3",       "lag_5",
-    "lag_8",       "lag_11",      "lag_15",      "any_active", "two_active", "three_active", "coactivation",
-    "joint_loss",  "loss_in_company"};
+    "lag_minus_4", "lag_minus_2",  "lag_minus_1",  "lag_0",      "lag_1",          "lag_2",
+    "lag_3",       "lag_5",        "lag_8",        "lag_11",     "lag_15",         "any_active",
+    "two_active",  "three_active", "coactivation", "joint_loss", "loss_in_company"};
 constexpr std::array<int, 11> lags{-4, -2, -1, 0, 1, 2, 3, 5, 8, 11, 15};
 
 /// A run's main part, as long as the shape says and blind where it is: (n_main x n_sensors).

@@ -80,7 +80,7 @@ enum class TrialStatistic : std::uint8_t {
   // Where nearly all simulated datasets have motion, in the whole run: who lacks it.
   joint_loss,       ///< covariance of two sensors' losses, mean over pairs
   loss_in_company,  ///< share lost where another sensor is sure to move, less that where none is likely to
-  slice_1,       ///< seconds of all sensors in the first of eighteen parts of the time
+  slice_1,          ///< seconds of all sensors in the first of eighteen parts of the time
   slice_18 = slice_1 + 17,
   count
 };

@@ -393,8 +393,8 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
   }
 }
 
-/// How far the cells of a sensor or of a trial are off, to whichever side: what was knocked, or went otherwise, loses in
-/// one place what it gains in another.
+/// How far the cells of a sensor or of a trial are off, to whichever side: what was knocked, or went otherwise, loses
+/// in one place what it gains in another.
 void FeatureMap::write_wholes(const Scaled& data, Writer& out) const {
   const auto write = [&](const auto& trials, const auto& sensors, const std::string& whose,
                          std::string_view statistic) {

@@ -61,15 +61,15 @@ std::optional<Deviation> deviation_of(const StudyFrame& frame, const stats::Matr
   double squares = 0.0;
   for (const double seconds : simulated) deviation.expected_s += seconds / n;
   for (const double seconds : simulated) squares += (seconds - deviation.expected_s) * (seconds - deviation.expected_s);
-  const double a_row = frame.window_s * std::sqrt(static_cast<double>(cells.size())) / static_cast<double>(trials.size());
+  const double a_row =
+      frame.window_s * std::sqrt(static_cast<double>(cells.size())) / static_cast<double>(trials.size());
   deviation.scatters = (deviation.measured_s - deviation.expected_s) / std::sqrt(squares / n + a_row * a_row);
   return deviation;
 }
 
 /// Of those that are about as strong, the first: all sensors, one, a trial.
 std::optional<Deviation> strongest_deviation(const StudyFrame& frame, const stats::Matrix<float>& plain,
-                                             std::span<const float> measured,
-                                             const std::vector<std::size_t>& trials) {
+                                             std::span<const float> measured, const std::vector<std::size_t>& trials) {
   constexpr double about = 0.95;
   std::optional<Deviation> strongest;
   const auto look = [&](const std::string& who, const auto& is_of) {

@@ -258,8 +258,8 @@ std::string sentence_of_set(const Outcome& outcome) {
   const bool one = outcome.named.size() == 1;
   if (outcome.nothing.p > outcome.alpha) {
     causes.push_back(something_else(outcome));
-    return counts_first(outcome) + "Taken as a whole, what measurement and simulation differ by may be chance." + places +
-           " If it isn't, the cause is " + enumerated(causes, "or") + "." + kind_of(outcome);
+    return counts_first(outcome) + "Taken as a whole, what measurement and simulation differ by may be chance." +
+           places + " If it isn't, the cause is " + enumerated(causes, "or") + "." + kind_of(outcome);
   }
   const std::string first = counts_first(outcome) + "The measurement ";
   if (is_unsupported(outcome))

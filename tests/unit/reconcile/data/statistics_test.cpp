@@ -365,7 +365,7 @@ TEST_CASE("what sensors lose together, one instead of another, or each by itself
   const std::vector<float> both_sure{0.9F, 0.9F}, one_sure{0.9F, 0.1F};
   Stream stream({1, 0, 0, Purpose::test});
   /// lose: of a row in which both are sure, or the first alone.
-  const auto rows = [&](const std::function<void(std::array<std::uint8_t, n>& bits, bool both)>& lose) {
+  const auto rows = [&](const std::function<void(std::array<std::uint8_t, n> & bits, bool both)>& lose) {
     SureRows sure(n);
     for (int row = 0; row < 2000; ++row) {
       std::array<std::uint8_t, n> bits{1, 1};
