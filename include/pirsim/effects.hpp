@@ -33,6 +33,9 @@ struct ParameterInfo {
   Scale scale = Scale::linear;
   std::string source;   ///< of the range: a paper, a data sheet, or `assumed`
   Condition only_if{};  ///< else it means nothing (a chair's back has no place of its own); empty: always
+
+  /// Of an angle: all directions are thought of, so that the range has no end.
+  [[nodiscard]] bool goes_round() const { return unit == "deg" && high - low >= 360.0; }
 };
 enum class ChoiceKind {
   sensor,

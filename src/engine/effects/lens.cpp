@@ -281,7 +281,8 @@ Effect sensor_yaw() {
                    .fingerprint =
                        "cells change as the map shifts sideways: seats on one side gain what the other side loses",
                    .confused_with = {"sensor_tilt", "seat_shift"},
-                   .parameters = {offset("yaw_deg", "deg", 8.0, 3.0, 180.0, "assumed: by eye")},
+                   .parameters = {offset("yaw_deg", "deg", 25.0, 3.0, 180.0,
+                                         "assumed: by eye, or knocked (8 and 25 were tried)")},
                    .choices = {sensor_choice()},
                    .reach = Reach::geometry},
           .alter = alter_sensor_yaw};

@@ -406,44 +406,129 @@ constexpr std::size_t fewest_gaps = 5;        ///< in a run, by which its longes
 
 // All columns together.
 
-struct Polls {
-  double n = 0.0, n_off = 0.0, chance = 0.0;  ///< changes, those off the grid, logarithm
-  [[nodiscard]] double share() const noexcept { return n > 0.0 ? 1.0 - n_off / n : 1.0; }
-};
+constexpr std::size_t most_timed = 600;  ///< rows of a run by which a clock is read: of more, it takes long
 
-/// Changes of any sensor on a grid of so many rows that begins anywhere in a run.
-Polls polls_of(const DatasetRows& data, std::size_t period) {
-  Polls polls;
+/// (n_runs) Rows in which any sensor changes.
+using Changes = std::vector<std::vector<double>>;
+
+Changes changes_of(const DatasetRows& data) {
+  Changes changes;
   for (const Series& run : data.runs) {
-    std::vector<double> n_at(period, 0.0);
-    double n = 0.0;
-    for (std::size_t i = data.n_sensors; i < run.bits.size(); ++i) {
-      const std::uint8_t bit = run.bits[i], before = run.bits[i - data.n_sensors];
-      if (bit == before || std::max(bit, before) == unknown_bit) continue;
-      n_at[i / data.n_sensors % period] += 1.0;
-      n += 1.0;
+    std::vector<double>& rows = changes.emplace_back();
+    for (std::size_t row = 1; row < std::min(run.n_rows(data.n_sensors), most_timed); ++row) {
+      const auto changed = [&](std::size_t sensor) {
+        const std::uint8_t bit = bit_of(run, row, sensor, data.n_sensors);
+        const std::uint8_t before = bit_of(run, row - 1, sensor, data.n_sensors);
+        return bit != before && std::max(bit, before) != unknown_bit;
+      };
+      std::size_t sensor = 0;
+      while (sensor < data.n_sensors && !changed(sensor)) ++sensor;
+      if (sensor < data.n_sensors) rows.push_back(static_cast<double>(row));
     }
-    const double most = *std::ranges::max_element(n_at), log_period = std::log(static_cast<double>(period));
-    polls.n += n;
-    polls.n_off += n - most;
-    polls.chance += std::min(0.0, log_period - most * log_period);
   }
-  return polls;
+  return changes;
+}
+
+/// The most rows that hardly any change comes sooner after another than.
+std::size_t spacing_of(const Changes& changes) {
+  std::vector<std::size_t> n_after(longest_period + 1, 0);
+  std::size_t n = 0;
+  for (const std::vector<double>& rows : changes) {
+    for (std::size_t i = 1; i < rows.size(); ++i)
+      ++n_after[std::min(longest_period, static_cast<std::size_t>(rows[i] - rows[i - 1]))];
+    n += rows.size();
+  }
+  std::size_t spacing = 1, n_sooner = n_after[1];
+  while (spacing < longest_period && static_cast<double>(n_sooner) <= may_differ / 2.0 * static_cast<double>(n))
+    n_sooner += n_after[++spacing];
+  return spacing;
+}
+
+/// Of a clock with a period of so many rows, which needn't be whole: changes in rows that it may end in, wherever it
+/// begins in each run.
+Edges on_clock(const Changes& changes, double period) {
+  constexpr double one_row = 1.0 - 1e-9;
+  Edges edges;
+  for (std::vector<double> rows : changes) {
+    const std::size_t n = rows.size();
+    for (double& row : rows) row = std::fmod(row, period);
+    std::ranges::sort(rows);
+    const auto later = [&](std::size_t i) { return i < n ? rows[i] : rows[i - n] + period; };
+    std::size_t most = 0;
+    for (std::size_t begin = 0, end = 0; begin < n; ++begin) {
+      while (end < begin + n && later(end) < rows[begin] + one_row) ++end;
+      most = std::max(most, end - begin);
+    }
+    edges.n += n;
+    edges.n_alike += most;
+  }
+  return edges;
 }
 
 void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                 std::vector<DataFinding>& findings) {
-  for (std::size_t period = longest_period; period >= 2; --period) {
-    const Polls polls = polls_of(data, period);
-    if (polls.n < static_cast<double>(fewest_edges) || polls.n_off > may_differ / 2.0 * polls.n) continue;
-    if (polls.chance > log_level) continue;
-    if (greatest_of(pilot, [&](const DatasetRows& d) { return polls_of(d, period).share(); }) > model_has_it) continue;
-    findings.push_back({.what = What::polled,
-                        .n_rows = data.n_rows(),
-                        .every_s = static_cast<double>(period) * frame.window_s,
-                        .chance = std::exp(polls.chance)});
-    return;  // its divisors do as well
+  const Changes changes = changes_of(data);
+  const std::size_t spacing = spacing_of(changes);
+  if (spacing < 2) return;
+  const double step = may_differ / static_cast<double>(most_timed / spacing);  // so little that a run keeps its rows
+  double period = 0.0;
+  Edges best;
+  for (double tried = static_cast<double>(spacing); tried < static_cast<double>(spacing + 1); tried += step) {
+    const Edges edges = on_clock(changes, tried);
+    if (edges.n_alike <= best.n_alike) continue;
+    best = edges;
+    period = tried;
   }
+  const auto n = static_cast<double>(best.n), n_on = static_cast<double>(best.n_alike);
+  if (best.n < fewest_edges || n - n_on > may_differ * n) return;
+  const double n_tried = std::log(1.0 / step) + static_cast<double>(data.runs.size()) * std::log(period);
+  const double chance = n_tried - n_on * std::log(period);
+  if (chance > log_level) return;
+  if (greatest_of(pilot, [&](const DatasetRows& d) { return on_clock(changes_of(d), period).share(); }) > model_has_it)
+    return;
+  findings.push_back(
+      {.what = What::polled, .n_rows = data.n_rows(), .every_s = period * frame.window_s, .chance = std::exp(chance)});
+}
+
+/// Rows with any motion, and those of them in which one sensor alone has it.
+Edges alone_in_row(const DatasetRows& data) {
+  Edges edges;
+  for (const Series& run : data.runs) {
+    for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
+      const auto n = std::ranges::count(std::span(run.bits).subspan(row * data.n_sensors, data.n_sensors), 1);
+      edges.n += n > 0 ? 1 : 0;
+      edges.n_alike += n == 1 ? 1 : 0;
+    }
+  }
+  return edges;
+}
+
+/// Rows in which two sensors would have motion if they knew nothing of each other, a pair at a time.
+double expected_pairs(const DatasetRows& data) {
+  double expected = 0.0;
+  for (const Series& run : data.runs) {
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
+      const auto n = static_cast<double>(counts_of({std::span(&run, 1), data.n_sensors}, sensor).n_ones);
+      sum += n;
+      squares += n * n;
+    }
+    expected +=
+        (sum * sum - squares) / (2.0 * static_cast<double>(std::max<std::size_t>(1, run.n_rows(data.n_sensors))));
+  }
+  return expected;
+}
+
+/// As if one telegram a row came through. Sensors that see little of each other's field may do that too.
+void find_one_at_a_time(const DatasetRows& data, std::span<const DatasetRows> pilot,
+                        std::vector<DataFinding>& findings) {
+  const Edges edges = alone_in_row(data);
+  if (edges.n < fewest_edges || edges.n_alike < edges.n || pilot.empty()) return;
+  const double usual = greatest_of(pilot, [](const DatasetRows& d) { return alone_in_row(d).share(); });
+  const double chance = std::max(log_chance(edges, usual), -expected_pairs(data));
+  if (chance > log_level) return;
+  findings.push_back(
+      {.what = What::one_at_a_time, .n_rows = edges.n, .chance = std::exp(chance), .is_impossible = false});
 }
 
 DataFinding::Rows place(const StudyFrame& frame, const Series& run, std::size_t row, std::size_t n_rows) {
@@ -453,8 +538,9 @@ DataFinding::Rows place(const StudyFrame& frame, const Series& run, std::size_t 
 /// Two beats together repeat rows in many places, so that one repeat must be beyond the third of the data as well; in a
 /// single run, it is merely odd.
 void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                 std::vector<DataFinding>& findings) {
+                 const WholeDatasets& periodic, std::vector<DataFinding>& findings) {
   const Repeats repeats = greatest_repeats(data);
+  std::optional<std::vector<std::vector<Series>>> whole;
   for (const auto which : {&Repeats::between_runs, &Repeats::in_a_run}) {
     const std::vector<Repeat>& own = repeats.*which;
     if (own.empty()) continue;
@@ -463,11 +549,16 @@ void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<con
     const double chance = n_pairs - repeat.information * std::log(2.0);
     if (chance > log_level) continue;
     const double third = own.size() == Repeats::most ? own.back().information : 0.0;
-    const double usual = greatest_of(pilot, [&](const DatasetRows& d) {
+    const auto repeated_in = [&](const DatasetRows& d) {
       const Repeats simulated = greatest_repeats(d);
       return (simulated.*which).empty() ? 0.0 : (simulated.*which).front().information;
-    });
-    if (repeat.information < beyond_model * std::max(usual, third)) continue;
+    };
+    if (repeat.information < beyond_model * std::max(greatest_of(pilot, repeated_in), third)) continue;
+    if (!whole) whole = periodic ? periodic() : std::vector<std::vector<Series>>{};
+    if (std::ranges::any_of(*whole, [&](const std::vector<Series>& runs) {
+          return repeat.information < beyond_model * repeated_in({runs, data.n_sensors});
+        }))
+      continue;
     findings.push_back({.what = What::repeated_rows,
                         .places = {place(frame, data.runs[repeat.run], repeat.row, repeat.n_rows),
                                    place(frame, data.runs[repeat.other_run], repeat.other_row, repeat.n_rows)},
@@ -579,7 +670,8 @@ void find_silence(const StudyFrame& frame, const DatasetRows& data, std::span<co
 
 }  // namespace
 
-std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
+std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot,
+                                    const WholeDatasets& periodic) {
   std::vector<DataFinding> findings;
   if (measured.kind != Measured::Kind::series) return findings;
   const DatasetRows data{measured.runs, frame.sensors.size()};
@@ -588,7 +680,8 @@ std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& mea
   find_constant(frame, data, sets, findings);
   find_beats(frame, data, sets, findings);
   find_polls(frame, data, sets, findings);
-  find_repeat(frame, data, sets, findings);
+  find_one_at_a_time(data, sets, findings);
+  find_repeat(frame, data, sets, periodic, findings);
   find_silence(frame, data, sets, findings);
   find_silent(frame, data, sets, findings);
   return findings;

@@ -26,8 +26,9 @@ constexpr std::array<std::string_view, first_sixth> cell_names{
 constexpr auto first_slice = static_cast<std::size_t>(TrialStatistic::slice_1);
 constexpr std::size_t n_slices = n_trial_statistics - first_slice;
 constexpr std::array<std::string_view, first_slice> trial_names{
-    "lag_minus_4", "lag_minus_2", "lag_minus_1", "lag_0",      "lag_1",      "lag_2",        "lag_3",       "lag_5",
-    "lag_8",       "lag_11",      "lag_15",      "any_active", "two_active", "three_active", "coactivation"};
+    "lag_minus_4", "lag_minus_2",  "lag_minus_1",  "lag_0",      "lag_1",          "lag_2",
+    "lag_3",       "lag_5",        "lag_8",        "lag_11",     "lag_15",         "any_active",
+    "two_active",  "three_active", "coactivation", "joint_loss", "loss_in_company"};
 constexpr std::array<int, 11> lags{-4, -2, -1, 0, 1, 2, 3, 5, 8, 11, 15};
 
 /// A run's main part, as long as the shape says and blind where it is: (n_main x n_sensors).
@@ -68,6 +69,7 @@ class TrialStatistics {
         cells_(frame.sensors.size()),
         seconds_(frame.sensors.size()),
         pairs_(n_pairs(frame), 0.0),
+        sure_(frame.sensors.size()),
         lead_known_(frame.sensors.size(), 1),
         tail_known_(frame.sensors.size(), 1) {}
 
@@ -79,7 +81,10 @@ class TrialStatistics {
       lead_known_[sensor] &= shape.lead_known[sensor];
       tail_known_[sensor] &= shape.tail_known[sensor];
     }
-    if (kind == Measured::Kind::series) add_trial(bits);
+    if (kind == Measured::Kind::series) {
+      add_trial(bits);
+      add_sure_rows(run, shape, bits);
+    }
     ++n_runs_;
   }
 
@@ -97,6 +102,8 @@ class TrialStatistics {
     for (std::size_t i = 0; i < n_trial_statistics; ++i) {
       out.trial(trial, static_cast<TrialStatistic>(i)) = static_cast<float>(trial_[i] / n_runs_);
     }
+    out.trial(trial, TrialStatistic::joint_loss) = static_cast<float>(sure_.joint_loss());
+    out.trial(trial, TrialStatistic::loss_in_company) = static_cast<float>(sure_.loss_in_company());
     for (std::size_t i = 0; i < pairs_.size(); ++i) out.pairs(trial)[i] = static_cast<float>(pairs_[i] / n_runs_);
   }
 
@@ -170,6 +177,23 @@ class TrialStatistics {
     trial_[static_cast<std::size_t>(TrialStatistic::coactivation)] += variance / (independent + 0.01);
   }
 
+  void add_sure_rows(const Series& run, const DataShape::Run& shape, const std::vector<std::uint8_t>& main) {
+    const std::size_t n = frame_.sensors.size();
+    const auto add = [&](const std::vector<float>& expected, std::size_t at, std::span<const std::uint8_t> row,
+                         const std::vector<std::uint8_t>& known) {
+      std::vector<std::uint8_t> bits(row.begin(), row.end());
+      for (std::size_t s = 0; s < n; ++s) bits[s] = known.empty() || known[s] != 0 ? bits[s] : unknown_bit;
+      if ((at + 1) * n <= expected.size()) sure_.add(std::span(expected).subspan(at * n, n), bits);
+    };
+    const auto row_of = [&](std::size_t row) { return std::span(run.bits).subspan(row * n, n); };
+    for (std::size_t row = 0; row < run.main_begin; ++row)
+      add(profile_.lead, run.main_begin - 1 - row, row_of(row), shape.lead_known);
+    for (std::size_t row = 0; row < std::min(shape.n_main, run.main_end - run.main_begin); ++row)
+      add(profile_.expected, row, std::span(main).subspan(row * n, n), {});
+    for (std::size_t row = run.main_end; row < run.n_rows(n); ++row)
+      add(profile_.tail, row - run.main_end, row_of(row), shape.tail_known);
+  }
+
   void add_pairs(const std::vector<std::uint8_t>& bits) {
     const std::size_t n = frame_.sensors.size();
     std::size_t pair = 0;
@@ -201,7 +225,8 @@ class TrialStatistics {
   std::vector<CellValues> cells_;             ///< (n_sensors) sums over runs
   std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs that know anything of the sensor)
   std::array<double, n_trial_statistics> trial_{};
-  std::vector<double> pairs_;                          ///< (n_pairs) sums over runs
+  std::vector<double> pairs_;  ///< (n_pairs) sums over runs
+  SureRows sure_;
   std::vector<std::uint8_t> lead_known_, tail_known_;  ///< (n_sensors) in all runs
   int n_runs_ = 0;
 };
@@ -428,13 +453,22 @@ Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<
     Profile::Trial& trial = profile.trials[run.trial];
     trial.n_main = std::max(trial.n_main, run.main_end - run.main_begin);
     trial.expected.resize(trial.n_main * n, 0.0F);
-    for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
-      if (run.bits[i] == 1) trial.expected[i - run.main_begin * n] += 1.0F;
+    trial.lead.resize(std::max(trial.lead.size(), run.main_begin * n), 0.0F);
+    trial.tail.resize(std::max(trial.tail.size(), run.bits.size() - run.main_end * n), 0.0F);
+    for (std::size_t i = 0; i < run.bits.size(); ++i) {
+      const std::size_t row = i / n;
+      float& sum = row < run.main_begin ? trial.lead[(run.main_begin - 1 - row) * n + i % n]
+                   : row < run.main_end ? trial.expected[i - run.main_begin * n]
+                                        : trial.tail[i - run.main_end * n];
+      if (run.bits[i] == 1) sum += 1.0F;
     }
     n_runs[run.trial] += 1.0;
   }
   for (std::size_t t = 0; t < profile.trials.size(); ++t) {
     Profile::Trial& trial = profile.trials[t];
+    for (auto* share : {&trial.lead, &trial.tail}) {
+      for (float& of_row : *share) of_row /= static_cast<float>(n_runs[t]);
+    }
     trial.movement.assign(trial.n_main, 0.0F);
     for (std::size_t i = 0; i < trial.expected.size(); ++i) {
       trial.expected[i] /= static_cast<float>(n_runs[t]);
@@ -490,6 +524,51 @@ std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape
     }
   }
   return values;
+}
+
+SureRows::SureRows(std::size_t n_sensors) : n_sensors_(n_sensors), pairs_(n_sensors * n_sensors) {}
+
+void SureRows::add(std::span<const float> expected, std::span<const std::uint8_t> bits) {
+  constexpr float sure = 0.85F, unlikely = 0.15F;  // assumed: of simulated datasets
+  std::array<std::size_t, 2> n{};                  // sensors that are sure to move, those that may
+  for (const float share : expected) {
+    n[0] += share >= sure ? 1 : 0;
+    n[1] += share > unlikely ? 1 : 0;
+  }
+  if (n[0] == 0) return;
+  for (std::size_t first = 0; first < n_sensors_; ++first) {
+    if (expected[first] < sure || bits[first] == unknown_bit) continue;
+    const double lost = bits[first] == 0 ? 1.0 : 0.0;
+    if (n[0] > 1 || n[1] == 1) {
+      Share& share = n[0] > 1 ? company_ : alone_;
+      share.rows += 1.0;
+      share.lost += lost;
+    }
+    for (std::size_t second = first + 1; second < n_sensors_; ++second) {
+      if (expected[second] < sure || bits[second] == unknown_bit) continue;
+      const double second_lost = bits[second] == 0 ? 1.0 : 0.0;
+      Pair& pair = pairs_[first * n_sensors_ + second];
+      pair.rows += 1.0;
+      pair.first_lost += lost;
+      pair.second_lost += second_lost;
+      pair.both_lost += lost * second_lost;
+    }
+  }
+}
+
+double SureRows::joint_loss() const {
+  double rows = 0.0, beyond_chance = 0.0;
+  for (const Pair& pair : pairs_) {
+    if (pair.rows == 0.0) continue;
+    rows += pair.rows;
+    beyond_chance += pair.both_lost - pair.first_lost * pair.second_lost / pair.rows;
+  }
+  return rows > 0.0 ? beyond_chance / rows : 0.0;
+}
+
+double SureRows::loss_in_company() const {
+  if (company_.rows == 0.0 || alone_.rows == 0.0) return 0.0;
+  return company_.lost / company_.rows - alone_.lost / alone_.rows;
 }
 
 void add_main_statistics(const BitSeries& series, double window_s, CellValues& values) {

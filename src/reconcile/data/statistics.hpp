@@ -20,6 +20,7 @@ struct Profile {
   struct Trial {
     std::size_t n_main = 0;
     std::vector<float> expected;     ///< (n_main x n_sensors) share of simulated datasets with motion
+    std::vector<float> lead, tail;   ///< the same, of rows before the main part, the last one first, and after it
     std::vector<std::uint8_t> busy;  ///< (n_main) among the rows with most expected motion
     std::vector<float> movement;     ///< (n_main) expected motion of all sensors, less its mean
     double cycle_rows = 3.0;         ///< period of desk work
@@ -76,7 +77,10 @@ enum class TrialStatistic : std::uint8_t {
   two_active,
   three_active,
   coactivation,  ///< variance of the number of active sensors, against independent ones
-  slice_1,       ///< seconds of all sensors in the first of eighteen parts of the time
+  // Where nearly all simulated datasets have motion, in the whole run: who lacks it.
+  joint_loss,       ///< covariance of two sensors' losses, mean over pairs
+  loss_in_company,  ///< share lost where another sensor is sure to move, less that where none is likely to
+  slice_1,          ///< seconds of all sensors in the first of eighteen parts of the time
   slice_18 = slice_1 + 17,
   count
 };
@@ -169,6 +173,27 @@ struct CellValues {
 
 /// Those of the main part; the others stay as they are.
 void add_main_statistics(const BitSeries& series, double window_s, CellValues& values);
+
+/// Rows in which sensors are nearly sure to move: what they lose in company and alone.
+class SureRows {
+ public:
+  explicit SureRows(std::size_t n_sensors);
+  /// expected, bits: (n_sensors) of one row; an unknown bit tells nothing.
+  void add(std::span<const float> expected, std::span<const std::uint8_t> bits);
+  [[nodiscard]] double joint_loss() const;       ///< 0 where no two sensors are sure together
+  [[nodiscard]] double loss_in_company() const;  ///< 0 where no sensor is sure in company, or none alone
+
+ private:
+  struct Pair {
+    double rows = 0.0, first_lost = 0.0, second_lost = 0.0, both_lost = 0.0;
+  };
+  struct Share {
+    double rows = 0.0, lost = 0.0;
+  };
+  std::size_t n_sensors_;
+  std::vector<Pair> pairs_;  ///< (n_sensors x n_sensors) the first below the second
+  Share company_, alone_;
+};
 
 // How closely two numbers go together. Private to reconcile.
 

@@ -170,6 +170,15 @@ TableChunk read_chunk(std::istream& stream, const std::string& key, std::uint32_
   return chunk;
 }
 
+/// What the script has is not looked for a second time: two of a kind on one sensor are refused. Nor is what means
+/// nothing to any sensor.
+void keep_meaningful(const RealizationSource& source, std::vector<std::string>& hypotheses) {
+  std::erase_if(hypotheses, [&](const std::string& hypothesis) {
+    return std::ranges::find(source.script.effects, hypothesis, &EffectSpec::name) != source.script.effects.end() ||
+           !effects::means_anything(effects::find(hypothesis).info, source.scene, source.script.sensing);
+  });
+}
+
 void append(TableChunk& chunk, TableChunk& more) {
   chunk.n_left_out += more.n_left_out;
   std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
@@ -190,6 +199,26 @@ std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame
   return all;
 }
 
+std::vector<std::vector<Series>> surroundings_pilot(const RealizationSource& source, const StudyFrame& frame,
+                                                    int n_replicates, std::uint32_t n_realizations,
+                                                    const Context& context) {
+  TableSettings settings{n_realizations, n_realizations, n_realizations, {}};
+  for (const effects::Effect* effect : effects::catalogue_for(source.script)) {
+    if (effect->info.family == effects::Family::environment) settings.effects.push_back(effect->info.name);
+  }
+  keep_meaningful(source, settings.effects);
+  std::vector<std::vector<Series>> all;
+  ordered_parallel<TableChunk>(
+      n_realizations, context.threads,
+      [&](std::size_t i) {
+        return simulate_datasets(source, frame, n_replicates, settings, static_cast<std::uint32_t>(i));
+      },
+      [&](TableChunk& chunk) {
+        for (SimulatedDataset& dataset : chunk.datasets) all.push_back(std::move(dataset.runs));
+      });
+  return all;
+}
+
 ReferenceTable make_reference_table(const RealizationSource& source, const StudyFrame& frame, const DataShape& shape,
                                     const Profile& profile, const TableSettings& asked,
                                     const std::filesystem::path& folder, const Context& context) {
@@ -199,14 +228,7 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
       if (effect->info.same_as.empty()) settings.effects.push_back(effect->info.name);
     }
   }
-  // What the script has is not looked for a second time: two of a kind on one sensor are refused.
-  std::erase_if(settings.effects, [&](const std::string& hypothesis) {
-    return std::ranges::find(source.script.effects, hypothesis, &EffectSpec::name) != source.script.effects.end();
-  });
-  // Nor what means nothing to any sensor.
-  std::erase_if(settings.effects, [&](const std::string& hypothesis) {
-    return !effects::means_anything(effects::find(hypothesis).info, source.scene, source.script.sensing);
-  });
+  keep_meaningful(source, settings.effects);
   if (settings.effects.empty())
     throw Error(ErrorCode::usage, "nothing is left to be looked for: the script has every effect that is asked for");
   ReferenceTable table;

@@ -61,6 +61,11 @@ class ReferenceTable {
 /// Pilot runs of the plain model, for profiles and shapes, in realizations that no table has.
 [[nodiscard]] std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame,
                                              std::uint32_t n_realizations, const Context& context = {});
+/// Datasets of a table of what surrounds people, as a fan or a draught, and of the plain model.
+[[nodiscard]] std::vector<std::vector<Series>> surroundings_pilot(const RealizationSource& source,
+                                                                  const StudyFrame& frame, int n_replicates,
+                                                                  std::uint32_t n_realizations,
+                                                                  const Context& context = {});
 
 /// Everything that a table's simulated datasets depend on, as a digest: scene, script, nuisance, runs of every trial,
 /// settings, catalogue, build.

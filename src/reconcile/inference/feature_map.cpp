@@ -268,6 +268,7 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       count += 1.0;
     }
     if (count == 0.0) continue;
+    if (statistic >= TrialStatistic::joint_loss) out.test_next();
     out.add(sum / count, [&] { return mean_of(name(statistic)); });
     out.add(std::sqrt(squares / count), [&] { return size_of(name(statistic)); });
   }
@@ -392,6 +393,28 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
   }
 }
 
+/// How far the cells of a sensor or of a trial are off, to whichever side: what was knocked, or went otherwise, loses
+/// in one place what it gains in another.
+void FeatureMap::write_wholes(const Scaled& data, Writer& out) const {
+  const auto write = [&](const auto& trials, const auto& sensors, const std::string& whose,
+                         std::string_view statistic) {
+    double size = 0.0, count = 0.0;
+    for (const std::size_t trial : trials) {
+      for (const std::size_t sensor : sensors) {
+        if (!known(trial, sensor, CellStatistic::seconds)) continue;
+        size += std::abs(data.cell(trial, sensor, CellStatistic::seconds));
+        count += 1.0;
+      }
+    }
+    if (count < 2.0) return;  // of one cell its own number tells it
+    out.test_next();
+    out.add(size / count, [&] { return FeatureName{whose + " as a whole", std::string(statistic), whose}; });
+  };
+  const std::vector<std::size_t> all = stats::numbers_to(frame_.sensors.size());
+  for (const std::size_t sensor : all) write(trials_, std::array{sensor}, frame_.sensors[sensor], of_whole_sensor);
+  for (const std::size_t trial : trials_) write(std::array{trial}, all, frame_.trials[trial], of_whole_trial);
+}
+
 double FeatureMap::likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                             std::span<const std::size_t> sensor_order) const {
   Correlation correlation;
@@ -469,6 +492,7 @@ void FeatureMap::write_all(const DatasetStatistics& statistics, Writer& out) con
   write_pairs(statistics, out);
   out.end_block();
   write_contrasts(data, out);
+  write_wholes(data, out);
   out.end_block();
   write_permutations(statistics, out);
   out.end_block();

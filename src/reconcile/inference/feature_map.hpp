@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pirsim/reconcile_outcome.hpp"
@@ -37,8 +38,8 @@ class FeatureMap {
   [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const {
     return known(trial, sensor, CellStatistic::seconds);
   }
-  /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
-  /// means and sizes over all cells.
+  /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means, what
+  /// sensors lose together, the means and sizes over all cells, and how far each sensor and trial is off as a whole.
   [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
   /// Columns of one kind each: cells, sensors, trials, time, pairs of sensors, contrasts over all cells, likeness to
   /// permuted rooms.
@@ -62,6 +63,7 @@ class FeatureMap {
   void write_time(const DatasetStatistics& data, Writer& out) const;
   void write_pairs(const DatasetStatistics& data, Writer& out) const;
   void write_contrasts(const Scaled& data, Writer& out) const;
+  void write_wholes(const Scaled& data, Writer& out) const;
   void write_permutations(const DatasetStatistics& data, Writer& out) const;
   void write_all(const DatasetStatistics& statistics, Writer& out) const;
   template <typename Of>
@@ -83,6 +85,9 @@ class FeatureMap {
   std::vector<std::size_t> envelope_columns_;
   std::vector<std::vector<std::size_t>> blocks_;
 };
+
+/// Statistics of features that are told by themselves: FeatureName::statistic.
+inline constexpr std::string_view of_whole_sensor = "sensor_as_a_whole", of_whole_trial = "trial_as_a_whole";
 
 // Features as they are written, one after the other. Private to reconcile.
 

@@ -1,8 +1,12 @@
 #include "reconcile/inference/locate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "engine/effects/catalogue.hpp"
 #include "model/core/parallel.hpp"
@@ -23,6 +27,65 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
   cell.low_s = stats::quantile(simulated, 0.025);
   cell.high_s = stats::quantile(simulated, 0.975);
   return cell;
+}
+
+/// How far the seconds of these cells together are off; none where nothing is known of them.
+std::optional<Deviation> deviation_of(const StudyFrame& frame, const stats::Matrix<float>& plain,
+                                      std::span<const float> measured, Deviation::Part part, const std::string& who,
+                                      const std::function<bool(std::size_t trial, std::size_t sensor)>& is_of) {
+  constexpr std::array statistics{CellStatistic::lead_seconds, CellStatistic::seconds, CellStatistic::tail_seconds};
+  const CellStatistic statistic = statistics[static_cast<std::size_t>(part)];
+  std::vector<std::pair<std::size_t, std::size_t>> cells;
+  std::set<std::size_t> trials;
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
+      if (!is_of(trial, sensor) || std::isnan(DatasetStatistics(frame, measured).cell(trial, sensor, statistic)))
+        continue;
+      cells.emplace_back(trial, sensor);
+      trials.insert(trial);
+    }
+  }
+  if (cells.empty()) return std::nullopt;
+  const auto sum = [&](std::span<const float> dataset) {
+    double seconds = 0.0;
+    for (const auto& [trial, sensor] : cells) {
+      const float of_cell = DatasetStatistics(frame, dataset).cell(trial, sensor, statistic);
+      seconds += std::isnan(of_cell) ? 0.0 : static_cast<double>(of_cell);
+    }
+    return seconds / static_cast<double>(trials.size());
+  };
+  std::vector<double> simulated;
+  for (std::size_t row = 0; row < plain.rows(); ++row) simulated.push_back(sum(plain.row(row)));
+  Deviation deviation{who, part, sum(measured)};
+  const auto n = static_cast<double>(simulated.size());
+  double squares = 0.0;
+  for (const double seconds : simulated) deviation.expected_s += seconds / n;
+  for (const double seconds : simulated) squares += (seconds - deviation.expected_s) * (seconds - deviation.expected_s);
+  const double a_row =
+      frame.window_s * std::sqrt(static_cast<double>(cells.size())) / static_cast<double>(trials.size());
+  deviation.scatters = (deviation.measured_s - deviation.expected_s) / std::sqrt(squares / n + a_row * a_row);
+  return deviation;
+}
+
+/// Of those that are about as strong, the first: all sensors, one, a trial.
+std::optional<Deviation> strongest_deviation(const StudyFrame& frame, const stats::Matrix<float>& plain,
+                                             std::span<const float> measured, const std::vector<std::size_t>& trials) {
+  constexpr double about = 0.95;
+  std::optional<Deviation> strongest;
+  const auto look = [&](const std::string& who, const auto& is_of) {
+    for (const auto part : {Deviation::Part::before, Deviation::Part::main, Deviation::Part::after}) {
+      const auto one = deviation_of(frame, plain, measured, part, who, [&](std::size_t trial, std::size_t sensor) {
+        return std::ranges::find(trials, trial) != trials.end() && is_of(trial, sensor);
+      });
+      if (!one || (strongest && about * std::abs(one->scatters) <= std::abs(strongest->scatters))) continue;
+      strongest = one;
+    }
+  };
+  look("", [](auto, auto) { return true; });
+  for (std::size_t s = 0; s < frame.sensors.size(); ++s)
+    look(frame.sensors[s], [s](auto, std::size_t sensor) { return sensor == s; });
+  for (const std::size_t t : trials) look(frame.trials[t], [t](std::size_t trial, auto) { return trial == t; });
+  return strongest;
 }
 
 constexpr std::uint32_t n_pilot_realizations = 40;
@@ -90,10 +153,12 @@ Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Mat
     for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
       if (!map.knows_cell(trial, sensor)) continue;
       location.cells.push_back(cell_of(frame, plain, measured, trial, sensor));
+      location.cells.back().scatters = std::sinh(observed[next]);  // as the map scales them
       location.cells.back().adjusted_p = test.adjusted_p[next++];
       location.band_s += 0.5 * (location.cells.back().high_s - location.cells.back().low_s);
     }
   }
+  location.strongest = strongest_deviation(frame, plain, measured, map.trials());
   location.band_s /= static_cast<double>(std::max<std::size_t>(1, location.cells.size()));
   return location;
 }

@@ -32,6 +32,7 @@ namespace {
 
 /// Beside one effect: more of them would take more than a minute to simulate (assumed).
 constexpr std::size_t most_partners = 8;
+constexpr std::uint32_t n_periodic = 40;  ///< datasets of each, by which repeated rows are judged (assumed)
 constexpr const char* explaining = "what the residuals follow";
 
 /// The likeliest other effect of the same family, and, beside optics and the environment, of people's motion: a
@@ -186,7 +187,11 @@ class Loop {
         [&](const StudyFrame& frame, std::span<const Series> pilot) {
           DataShape shape = shape_of(frame, measured_, pilot);
           step.notes = notes_on(frame, shape, measured_, pilot);
-          if (applied_.empty()) step.findings = check_data(frame, measured_, pilot);
+          const auto periodic = [&] {
+            const RealizationSource source{scene_, script, settings.nuisance, context_.seed};
+            return surroundings_pilot(source, frame, shape.n_replicates, n_periodic, context_);
+          };
+          if (applied_.empty()) step.findings = check_data(frame, measured_, pilot, periodic);
           return shape;
         },
         context_);
@@ -469,6 +474,15 @@ class Loop {
          " before, " + p_in_words(v.after.p, v.after.least_p) + " after");
     if (!v.refused) tell("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
     outcome_.verification = std::move(v);
+    if (outcome_.verdict == Verdict::several && !outcome_.verification->explains()) take_back_several();
+  }
+
+  /// What explains nothing of held-out trials may be one of those that were applied, or something else.
+  void take_back_several() {
+    outcome_.verdict = Verdict::one_of;
+    outcome_.fits.clear();
+    for (Candidate& candidate : outcome_.candidates) candidate.named_together = false;
+    tell("several together are taken back: they explain too little of the held-out trials");
   }
 
   [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const {

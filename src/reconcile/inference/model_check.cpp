@@ -152,6 +152,7 @@ std::optional<RangeEnd> range_end_of(const FittedEffect& fitted) {
   std::ranges::stable_partition(parameters, &FittedParameter::is_strength);
   for (const FittedParameter* parameter : parameters) {
     const effects::ParameterInfo& info = info_of(fitted.effect.name, parameter->name);
+    if (info.goes_round()) continue;
     const std::optional<double> end = end_near(info, parameter->value);
     if (end) return RangeEnd{fitted.effect.name, parameter->name, parameter->unit, {info.low, info.high}, *end, *end};
   }

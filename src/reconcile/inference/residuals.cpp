@@ -13,6 +13,7 @@
 
 #include "model/core/parallel.hpp"
 #include "model/schema/actions.hpp"
+#include "reconcile/data/statistics.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "stats/intervals.hpp"
 #include "stats/trees.hpp"
@@ -72,6 +73,30 @@ class RunOdds {
   std::vector<double> mean_, sd_, weight_;  ///< (n_runs)
 };
 
+/// Rows of the shortest stretch of motion between two rows without, of any sensor; 0: none.
+double shortest_stretch(const Series& run, std::size_t n_sensors) {
+  std::size_t shortest = 0;
+  for (std::size_t s = 0; s < n_sensors; ++s) {
+    std::size_t begin = 0;  // of the stretch; 0: none, or unknown how long
+    for (std::size_t row = run.main_begin + 1; row < run.main_end; ++row) {
+      const std::uint8_t bit = run.bits[row * n_sensors + s], before = run.bits[(row - 1) * n_sensors + s];
+      if (bit == 0 && before == 1 && begin > 0 && (shortest == 0 || row - begin < shortest)) shortest = row - begin;
+      if (bit != 1) begin = 0;
+      if (bit == 1 && before == 0) begin = row;
+    }
+  }
+  return static_cast<double>(shortest);
+}
+
+std::vector<double> ranks_of(const std::vector<double>& values) {
+  std::vector<double> ranks;
+  for (const double value : values) {
+    const auto below = std::ranges::count_if(values, [&](double other) { return other < value; });
+    ranks.push_back(static_cast<double>(below) + 0.5 * static_cast<double>(std::ranges::count(values, value)));
+  }
+  return ranks;
+}
+
 /// What a contrast is called, of either side.
 struct ContrastWords {
   std::string who, when;
@@ -127,6 +152,19 @@ class Session {
     }
   }
   [[nodiscard]] const std::vector<Contrast>& contrasts() const noexcept { return contrasts_; }
+  /// Spearman's correlation of the shortest stretches and the order of the runs that have any, as Fisher's z.
+  [[nodiscard]] double growth_of_stretches(const ContrastData& data) const {
+    std::vector<double> stretches;
+    for (const std::size_t run : order_) {
+      if (data.shortest[run] > 0.0) stretches.push_back(data.shortest[run]);
+    }
+    if (stretches.size() < fewest_runs) return 0.0;
+    Correlation correlation;
+    for (std::size_t place = 0; const double rank : ranks_of(stretches))
+      correlation.add(static_cast<double>(place++), rank);
+    constexpr double nearly_all = 0.99;
+    return std::atanh(std::clamp(correlation.value(), -nearly_all, nearly_all));
+  }
   [[nodiscard]] double value(const Contrast& contrast, const ContrastData& data) const {
     double sum = 0.0;
     for (std::size_t run = 0; run < contrast.load.size(); ++run)
@@ -674,6 +712,7 @@ ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std:
   std::vector<Series> seen;
   for (const DataShape::Run& wanted : shape.runs) {
     std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n);
+    data.shortest.push_back(0.0);
     const Series* run = run_of(runs, wanted);
     if (run == nullptr) continue;
     Series& main = seen.emplace_back(*run);
@@ -682,6 +721,7 @@ ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std:
     for (std::size_t i = 0; i < std::min(wanted.unknown.size(), main.main_end * n - first); ++i) {
       if (wanted.unknown[i] != 0) main.bits[first + i] = unknown_bit;
     }
+    data.shortest.back() = shortest_stretch(main, n);
     const std::vector<Gaps> own = gaps_of(main, n);
     for (std::size_t s = 0; s < n; ++s) {
       gaps[0].awaited += own[s].awaited;
@@ -704,22 +744,24 @@ std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const Dat
     if (found && found->p <= alpha) telling.push_back(*found);
   };
   const Session session(frame, shape, simulated);
-  const auto look_at_session = [&](const auto& wanted) {
+  for (const bool of_all : {true, false}) {
     std::vector<const Contrast*> contrasts;
     std::vector<ContrastWords> words;
     for (const Contrast& contrast : session.contrasts()) {
-      if (!wanted(contrast)) continue;
+      if ((contrast.column == 0) != of_all) continue;
       contrasts.push_back(&contrast);
       words.push_back(contrast.words);
     }
+    if (of_all && !words.empty())
+      words.push_back({all_sensors, "from trial to trial", "motion, once begun, lasts longer and longer",
+                       "motion, once begun, lasts less and less"});
     look(words, [&](const ContrastData& data) {
       std::vector<double> values;
       for (const Contrast* contrast : contrasts) values.push_back(session.value(*contrast, data));
+      if (values.size() < words.size()) values.push_back(session.growth_of_stretches(data));
       return values;
     });
-  };
-  look_at_session([](const Contrast& contrast) { return contrast.column == 0; });
-  look_at_session([](const Contrast& contrast) { return contrast.column > 0; });
+  }
   // Gaps at the same moments less often than by chance have no known cause.
   const ContrastWords together{all_sensors, "", "silent at the same moments oftener than by chance", ""};
   look(std::span(&together, 1), [](const ContrastData& data) { return std::vector<double>{data.joint_silence}; });

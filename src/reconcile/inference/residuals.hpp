@@ -14,6 +14,7 @@ namespace pirsim::reconcile {
 /// What contrasts are made from.
 struct ContrastData {
   std::vector<std::vector<Gaps>> gaps;  ///< (n_runs x (1 + n_sensors)) of all sensors, of each
+  std::vector<double> shortest;         ///< (n_runs) rows of the shortest stretch of motion that isn't cut off; 0: none
   double joint_silence = 0.0;           ///< JointSilence::log_ratio()
 };
 /// runs: of a dataset; made blind where the shape is.

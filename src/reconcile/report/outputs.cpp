@@ -28,7 +28,8 @@ Json to_json(const Location& location) {
                      {"expected_s", cell.expected_s},
                      {"difference_s", cell.measured_s - cell.expected_s},
                      {"band_s", {cell.low_s, cell.high_s}},
-                     {"adjusted_p", cell.adjusted_p}});
+                     {"adjusted_p", cell.adjusted_p},
+                     {"scatters", cell.scatters}});
   }
   for (const EnvelopeFeature& feature : location.envelope) {
     envelope.push_back({{"feature", feature.name.text},
@@ -162,6 +163,8 @@ constexpr Column<LocatedCell> located_cells[]{
      [](const LocatedCell& cell) -> Cell { return cell.high_s; }},
     {{"adjusted_p", Holds::number, "below alpha, the cell differs whatever the others do"},
      [](const LocatedCell& cell) -> Cell { return cell.adjusted_p; }},
+    {{"scatters", Holds::number, "by which it is off, of the model's own; a frame needs 3"},
+     [](const LocatedCell& cell) -> Cell { return cell.scatters; }},
 };
 
 struct CandidateLine {

@@ -100,7 +100,7 @@ io::GridChart::Cell square(const LocatedCell& cell, double alpha) {
   return {difference, with_sign(difference),
           "measured " + fixed(cell.measured_s, 1) + " s, model " + fixed(cell.expected_s, 1) + " s, usually " +
               fixed(cell.low_s, 0) + " to " + fixed(cell.high_s, 0) + " s",
-          cell.adjusted_p <= alpha ? io::GridChart::Mark::framed : io::GridChart::Mark::none};
+          cell.differs(alpha) ? io::GridChart::Mark::framed : io::GridChart::Mark::none};
 }
 
 /// Where a number lies if its envelope is stretched to reach from -1 to 1, with the median at 0.
@@ -141,7 +141,7 @@ io::Table pages_to_watch(const Location& location, double alpha, const Watched& 
   std::string study;
   for (const std::string& word : watched.model_options) study += ' ' + shell_word(word);
   for (const LocatedCell& cell : location.cells) {
-    if (cell.adjusted_p > alpha || table.rows.size() == most) continue;
+    if (!cell.differs(alpha) || table.rows.size() == most) continue;
     const std::string page = file_word(cell.trial) + ".html";
     table.rows.push_back(
         {cell.trial, cell.sensor, "pirsim view" + study + " --trial " + shell_word(cell.trial) + " -o " + page,
@@ -153,7 +153,7 @@ io::Table pages_to_watch(const Location& location, double alpha, const Watched& 
 io::ReportSection where(const Outcome& outcome, const Watched& watched) {
   const double alpha = outcome.alpha;
   const Location& location = outcome.location;
-  const auto differing = std::ranges::count_if(location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
+  const auto differing = std::ranges::count_if(location.cells, [&](const auto& c) { return c.differs(alpha); });
   io::ReportSection section{"Where they differ", {}, {}, {}};
   section.paragraphs = {
       count_of(static_cast<std::size_t>(differing), location.cells.size()) +
@@ -236,8 +236,9 @@ io::ReportSection strength(const Outcome& outcome) {
   return section;
 }
 
-std::string what_is_shown(const Verification& v) {
-  const std::string seen = seen_on_held_out(v);
+std::string what_is_shown(const Outcome& outcome) {
+  const Verification& v = *outcome.verification;
+  const std::string seen = seen_on_held_out(outcome);
   if (v.closed || !v.shrunk) return seen;
   if (v.refused)
     return seen + " But the test of everything still finds a difference there (" +
@@ -276,15 +277,16 @@ io::BarChart held_out_chart(const Verification& v, const std::string& named) {
   return chart;
 }
 
-io::ReportSection held_out(const Verification& v, const std::string& named) {
+io::ReportSection held_out(const Outcome& outcome) {
+  const Verification& v = *outcome.verification;
   io::ReportSection section{"Does it help", {}, {}, {}};
   section.paragraphs = {
-      what_is_shown(v),
+      what_is_shown(outcome),
       "Trials were set aside, what is missing was sought and fitted without them, and then they were compared with the "
       "model before and after, " +
           std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
           short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)};
-  section.charts.emplace_back(held_out_chart(v, named));
+  section.charts.emplace_back(held_out_chart(v, applied_to_held_out(outcome)));
   io::Table table{{"on trials set aside", "before", "after"}, {}};
   table.rows = {
       {"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
@@ -316,6 +318,8 @@ std::string in_plain_words(const std::string& statistic) {
                                                         {"tail_seconds", "motion after the main part"},
                                                         {"late_tail_seconds", "motion long after the main part"},
                                                         {"run_variance", "runs differ from one another"},
+                                                        {"joint_loss", "motion that two sensors lack at once"},
+                                                        {"loss_in_company", "motion lost beside other sensors"},
                                                         {"share_of_time", "how motion spreads over the time"},
                                                         {"together", "motion while another sensor moves"}};
   if (const auto found = words.find(statistic); found != words.end()) return found->second;
@@ -569,11 +573,7 @@ io::Report report_page(const Outcome& outcome, const Watched& watched) {
   report.paragraphs.push_back(next_step(outcome));
   report.sections = {where(outcome, watched), envelope(outcome.location, outcome.alpha), candidates(outcome)};
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome));
-  if (outcome.verification) {
-    const bool undecided = outcome.fits.empty();
-    const std::string applied = undecided ? "the likeliest of each fold" : enumerated(outcome.named, "and");
-    report.sections.push_back(held_out(*outcome.verification, applied));
-  }
+  if (outcome.verification) report.sections.push_back(held_out(outcome));
   if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome));
   return report;
 }

@@ -1,6 +1,7 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -9,6 +10,7 @@
 #include "engine/effects/catalogue.hpp"
 #include "model/core/text.hpp"
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/feature_map.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -27,6 +29,11 @@ std::string strength_in_words(const FittedEffect& fitted) {
   std::vector<std::string> told;
   for (const FittedParameter& p : fitted.parameters) {
     const auto parameter = std::ranges::find(info.parameters, p.name, &effects::ParameterInfo::name);
+    constexpr double half_circle = 180.0;
+    if (parameter->goes_round() && p.interval.high - p.interval.low >= half_circle) {
+      told.push_back(effects::phrase_of(*parameter) + " not determined");
+      continue;
+    }
     told.push_back(effects::phrase_of(*parameter) + " " + with_unit(p.value, p.unit) +
                    (told.empty() ? " (90 % interval " : " (") + short_number(p.interval.low) + " to " +
                    short_number(p.interval.high) + ")");
@@ -71,6 +78,8 @@ std::string_view advice(What what) {
       return "see whether the logger writes its sign of life or its polling as motion";
     case What::polled:
       return "see how often the logger asks: if only so often, set window_s to that and resample the rows";
+    case What::one_at_a_time:
+      return "see whether the radio or the gateway passes one telegram at a time";
     case What::repeated_rows:
       return "see whether files were joined or saved under a wrong name; take one of the two places out";
     case What::all_silent:
@@ -85,20 +94,64 @@ using Names = std::vector<std::string>;
 
 /// Which kind of effect it is, if that is clear though its name isn't.
 std::string kind_of(const Outcome& outcome) {
-  if (!outcome.family.is_sure()) return {};
+  if (!outcome.family.is_sure() || (outcome.verification && !outcome.verification->explains())) return {};
   return " The cause belongs to the family " + std::string(name(outcome.family.family)) + " with probability " +
          short_number(outcome.family.probability) + ".";
 }
 
+/// Which part of the trials is off most, and by how much.
+std::string most_of_all(const Location& location) {
+  constexpr double worth_telling = 3.0, whole_s = 1.0;  // scatters; what is expected is hardly anything below a second
+  if (!location.strongest || std::abs(location.strongest->scatters) < worth_telling) return {};
+  const auto& [who, part, measured_s, expected_s, scatters] = *location.strongest;
+  const std::string there = part == Deviation::Part::before  ? "before the main part"
+                            : part == Deviation::Part::after ? "after the main part"
+                                                             : "in the main part";
+  const double change = 100.0 * std::abs(measured_s - expected_s) / std::max(expected_s, whole_s);
+  return " Strongest " + there + ": " + (who.empty() ? "all sensors" : who) + " " + fixed(change, 0) + " % " +
+         (measured_s < expected_s ? "less" : "more") + " (" + fixed(measured_s, 1) + " s with motion a trial, " +
+         fixed(expected_s, 1) + " s expected).";
+}
+
+/// What the numbers of sensors together, and of one sensor or trial as a whole, say by themselves.
+std::string told_of_shared(const Outcome& outcome) {
+  const auto is_beyond = [&](const EnvelopeFeature& feature) { return feature.adjusted_p <= outcome.alpha; };
+  Names told;
+  for (const std::string_view statistic : {of_whole_sensor, of_whole_trial}) {
+    Names off;
+    std::size_t n = 0;
+    for (const EnvelopeFeature& feature : outcome.location.envelope) {
+      if (feature.name.statistic != statistic) continue;
+      ++n;
+      if (is_beyond(feature) && feature.observed > feature.median) off.push_back(feature.name.place);
+    }
+    if (off.empty() || 2 * off.size() > n) continue;  // most of them: it is no matter of one
+    told.push_back(enumerated(off, "and") + (off.size() == 1 ? " differs" : " differ") + " as a whole");
+  }
+  for (const EnvelopeFeature& feature : outcome.location.envelope) {
+    if (!is_beyond(feature)) continue;
+    const bool more = feature.observed > feature.median;
+    if (feature.name.statistic == name(TrialStatistic::joint_loss))
+      told.emplace_back(more ? "sensors are lost together" : "where two sensors should report, one of them is lost");
+    if (feature.name.statistic == name(TrialStatistic::loss_in_company) && more)
+      told.emplace_back("sensors are lost where others report, and hardly alone");
+  }
+  if (told.empty()) return {};
+  std::string text = joined(told, "; ") + ".";
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
 std::string where(const Outcome& outcome) {
   const auto& cells = outcome.location.cells;
-  const auto differing = std::ranges::count_if(cells, [&](const auto& c) { return c.adjusted_p <= outcome.alpha; });
+  const auto differing = std::ranges::count_if(cells, [&](const auto& c) { return c.differs(outcome.alpha); });
   const std::string of = std::to_string(cells.size()) + " cells (one trial at one sensor) ";
   const std::string p = p_in_words(outcome.location.p, outcome.location.least_p());
   if (differing == 0)
-    return " None of the " + of + "differs by more than chance, but everything together does (" + p + ").";
+    return " None of the " + of + "differs by more than chance, but everything together does (" + p + ")." +
+           most_of_all(outcome.location);
   return " " + std::to_string(differing) + " of " + of + (differing == 1 ? "differs" : "differ") +
-         " by more than chance (everything together: " + p + ").";
+         " by more than chance (everything together: " + p + ")." + most_of_all(outcome.location);
 }
 
 /// The effects of which a sentence speaks.
@@ -180,9 +233,10 @@ std::string sentence_of_named(const Outcome& outcome) {
          (strength.empty() ? "." : ": " + strength + ".") + rest;
 }
 
-/// While they may be wrong, nothing else is applied.
+/// While they may be wrong, nothing else is applied; said first where no other cause comes before them.
 std::string counts_first(const Outcome& outcome) {
   if (!counts_in_doubt(outcome.candidates, outcome.alpha)) return {};
+  if (!outcome.named.empty() && !is_about_counts(outcome.named.front())) return {};
   return "Check the people counts first: while they may be wrong, what else is missing can't be told. ";
 }
 
@@ -204,8 +258,8 @@ std::string sentence_of_set(const Outcome& outcome) {
   const bool one = outcome.named.size() == 1;
   if (outcome.nothing.p > outcome.alpha) {
     causes.push_back(something_else(outcome));
-    return "Taken as a whole, what measurement and simulation differ by may be chance." + places +
-           " If it isn't, the cause is " + enumerated(causes, "or") + "." + kind_of(outcome);
+    return counts_first(outcome) + "Taken as a whole, what measurement and simulation differ by may be chance." +
+           places + " If it isn't, the cause is " + enumerated(causes, "or") + "." + kind_of(outcome);
   }
   const std::string first = counts_first(outcome) + "The measurement ";
   if (is_unsupported(outcome))
@@ -366,6 +420,21 @@ std::string drivers_in_words(const Residuals& residuals) {
   return joined(texts, "; ");
 }
 
+/// Of the verdict no_disagreement: a cell beyond its own range may be more than chance, though all of them together
+/// aren't.
+std::string step_of_agreement(const Location& location) {
+  const auto off = [](const LocatedCell& cell) { return cell.is_outside() ? std::abs(cell.scatters) : -1.0; };
+  const auto worst = std::ranges::max_element(location.cells, {}, off);
+  if (worst == location.cells.end() || off(*worst) < 0.0)
+    return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
+  const auto outside = std::ranges::count_if(location.cells, &LocatedCell::is_outside);
+  return "What to do next: see whether " + worst->sensor + " hangs as drawn and " + worst->trial +
+         " went as written (" + fixed(worst->measured_s, 0) + " s with motion, usually " + fixed(worst->low_s, 0) +
+         " to " + fixed(worst->high_s, 0) + " s). " + std::to_string(outside) + " of " +
+         std::to_string(location.cells.size()) +
+         " cells lie outside their own range, and one of twenty does by chance. More runs make the experiment sharper.";
+}
+
 /// Of the verdict faulty_data: what is wrong with the file.
 std::string sentence_of_file(const Outcome& outcome) {
   std::vector<std::string> told;
@@ -475,6 +544,8 @@ std::string in_words(const DataFinding& finding) {
       return sensor + " is 1 " + every + ", whatever happens";
     case What::polled:
       return "no sensor changes but " + every;
+    case What::one_at_a_time:
+      return "no two sensors are 1 in the same row, in " + grouped(finding.n_rows) + " rows with motion";
     case What::repeated_rows:
       return place(finding.places.front()) + " stand again as " + place(finding.places.back());
     case What::all_silent:
@@ -512,17 +583,27 @@ io::ReportSection file_section(const std::vector<DataFinding>& findings) {
 
 // The verdict in one sentence, what was found on the way to it, and what a reader may do.
 
-std::string seen_on_held_out(const Verification& v) {
+std::string seen_on_held_out(const Outcome& outcome) {
+  const Verification& v = *outcome.verification;
   const std::string there = "On trials not used for fitting, ";
-  if (v.closed) return there + "the simulation with what was applied agrees with the data.";
-  if (v.shrunk) return there + "the simulation with what was applied comes closer to the data.";
-  return there + "no improvement could be demonstrated.";
+  if (!v.shrunk) return there + "no improvement could be demonstrated.";
+  return there + "the simulation with " + applied_to_held_out(outcome) +
+         (v.closed ? " agrees with the data." : " comes closer to the data.");
+}
+
+std::string applied_to_held_out(const Outcome& outcome) {
+  if (!outcome.fits.empty()) return enumerated(outcome.named, "and");
+  Names found;  // the likeliest of each fold
+  for (const std::string& name : outcome.verification->names) {
+    if (std::ranges::find(found, name) == found.end()) found.push_back(name);
+  }
+  return found.empty() ? "the likeliest of each fold" : enumerated(found, "or");
 }
 
 std::string next_step(const Outcome& outcome) {
   switch (outcome.verdict) {
     case Verdict::no_disagreement:
-      return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
+      return step_of_agreement(outcome.location);
     case Verdict::named:
       return step_of_named(outcome);
     case Verdict::several:
@@ -580,8 +661,9 @@ std::vector<std::string> details(const Outcome& outcome) {
       texts.emplace_back("None of the others that were tried beside it explains what is left.");
     if (applied && !look.passes()) texts.push_back("That is not all. " + in_words(look));
   }
+  if (std::string shared = told_of_shared(outcome); !shared.empty()) texts.push_back(std::move(shared));
   if (outcome.range_end) texts.push_back(told_of_end(*outcome.range_end));
-  if (outcome.verification) texts.push_back(seen_on_held_out(*outcome.verification));
+  if (outcome.verification) texts.push_back(seen_on_held_out(outcome));
   if (outcome.residuals) texts.push_back(sentence(*outcome.residuals));
   if (outcome.left_over && !outcome.left_over->drivers.empty()) texts.push_back(sentence_of_rest(*outcome.left_over));
   return texts;

@@ -17,7 +17,9 @@ namespace pirsim::reconcile {
 /// Its name with its twins, its parameters and choices.
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
 /// On trials that it was not fitted on, whether the model with what was applied is nearer to the data.
-[[nodiscard]] std::string seen_on_held_out(const Verification& verification);
+[[nodiscard]] std::string seen_on_held_out(const Outcome& outcome);
+/// What was applied there.
+[[nodiscard]] std::string applied_to_held_out(const Outcome& outcome);
 /// What else a choice may be, in brackets; empty if the data tell.
 [[nodiscard]] std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice,
                                           const std::string& value);

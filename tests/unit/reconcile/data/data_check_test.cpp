@@ -3,6 +3,7 @@
 #include "reconcile/data/data_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "pirsim/random.hpp"
@@ -53,10 +54,11 @@ std::vector<Series> pilot(const Bit& bit = at_work, const Change& change = none)
   return all;
 }
 
-std::vector<DataFinding> check(std::vector<Series> runs, std::span<const Series> simulated) {
+std::vector<DataFinding> check(std::vector<Series> runs, std::span<const Series> simulated,
+                               const WholeDatasets& periodic = {}) {
   Measured measured;
   measured.runs = std::move(runs);
-  return check_data(frame_of_four(), measured, simulated);
+  return check_data(frame_of_four(), measured, simulated, periodic);
 }
 std::vector<DataFinding> check(const Change& change, const Change& in_model = none) {
   std::vector<Series> runs = dataset(1);
@@ -151,6 +153,45 @@ TEST_CASE("a logger that asks only now and then is told with how often", "[data_
   CHECK(polled->every_s == 4.0);
 }
 
+TEST_CASE("a logger that asks every 2.3 s is told, and sensors that hold for three are not", "[data_check]") {
+  std::vector<Series> asked = dataset(1), held = dataset(1);
+  for (Series& run : asked) {
+    const std::vector<std::uint8_t> now = run.bits;
+    for (std::size_t row = 0; row < n_rows; ++row) {
+      const auto poll = static_cast<std::size_t>(std::ceil(2.3 * std::floor(static_cast<double>(row) / 2.3)));
+      for (std::size_t s = 0; s < n_sensors; ++s) bit(run, row, s) = now[poll * n_sensors + s];
+    }
+  }
+  for (Series& run : held) {
+    for (std::size_t s = 0; s < n_sensors; ++s) {
+      for (std::size_t row = 1, since = 3; row < n_rows; ++row) {
+        if (++since < 3) bit(run, row, s) = bit(run, row - 1, s);
+        if (bit(run, row, s) != bit(run, row - 1, s)) since = 0;
+      }
+    }
+  }
+  const auto told = [](const std::vector<DataFinding>& findings) {
+    const auto polled = std::ranges::find(findings, What::polled, &DataFinding::what);
+    return polled == findings.end() ? 0.0 : polled->every_s;
+  };
+  CHECK(told(check(std::move(asked), pilot())) == Approx(2.3).margin(0.02));
+  CHECK(told(check(std::move(held), pilot())) == 0.0);
+}
+
+TEST_CASE("a gateway that passes one telegram a row is odd, unless the model's sensors never meet either",
+          "[data_check]") {
+  const Change one = each_row([](Series& run, std::size_t row) {
+    const auto bits = std::span(run.bits).subspan(row * n_sensors, n_sensors);
+    const auto first = std::ranges::find(bits, 1);
+    if (first != bits.end()) std::fill(first + 1, bits.end(), std::uint8_t{0});
+  });
+  const auto findings = check(one);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings.front().what == What::one_at_a_time);
+  CHECK_FALSE(any_impossible(findings));
+  CHECK(check(one, one).empty());
+}
+
 TEST_CASE("rows that stand twice are told with both places", "[data_check]") {
   const Change pasted = [](std::vector<Series>& runs) {
     for (std::size_t row = 0; row < 50; ++row) {
@@ -166,6 +207,15 @@ TEST_CASE("rows that stand twice are told with both places", "[data_check]") {
   CHECK((places[0].from_row <= 21 && places[0].from_row > 15 && places[0].to_row >= 70 && places[0].to_row < 76));
   CHECK(places[1].from_row - places[0].from_row == 40);
   CHECK(check(pasted, pasted).empty());
+  // A periodic cause repeats them too.
+  std::vector<Series> measured = dataset(1), fan = dataset(2);
+  pasted(measured);
+  const auto told_beside = [&](const std::vector<Series>& periodic) {
+    return !check(measured, pilot(), [&] { return std::vector<std::vector<Series>>{periodic}; }).empty();
+  };
+  CHECK(told_beside(fan));
+  pasted(fan);
+  CHECK_FALSE(told_beside(fan));
 }
 
 TEST_CASE("work by the metronome and runs that are repeated repeat rows, and nothing is told", "[data_check]") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "pirsim/geometry.hpp"
@@ -357,4 +358,49 @@ TEST_CASE("what doesn't vary goes together with nothing", "[reconcile]") {
   CHECK(correlation.value() == 0.0);
   for (const double x : {1.0, 2.0, 3.0}) correlation.add(x, 0.7);
   CHECK(correlation.value() == 0.0);
+}
+
+TEST_CASE("what sensors lose together, one instead of another, or each by itself is told apart", "[statistics]") {
+  constexpr std::size_t n = 2;
+  const std::vector<float> both_sure{0.9F, 0.9F}, one_sure{0.9F, 0.1F};
+  Stream stream({1, 0, 0, Purpose::test});
+  /// lose: of a row in which both are sure, or the first alone.
+  const auto rows = [&](const std::function<void(std::array<std::uint8_t, n> & bits, bool both)>& lose) {
+    SureRows sure(n);
+    for (int row = 0; row < 2000; ++row) {
+      std::array<std::uint8_t, n> bits{1, 1};
+      lose(bits, row % 2 == 0);
+      sure.add(row % 2 == 0 ? both_sure : one_sure, bits);
+    }
+    return sure;
+  };
+  const SureRows by_itself = rows([&](auto& bits, bool) {
+    for (std::uint8_t& bit : bits) bit = stream.uniform() < 0.2 ? 0 : 1;
+  });
+  const SureRows jammed = rows([&](auto& bits, bool) { bits[0] = bits[1] = stream.uniform() < 0.2 ? 0 : 1; });
+  const SureRows collided = rows([&](auto& bits, bool both) { bits[both ? stream.index(2) : 1] = 0; });
+  CHECK(std::abs(by_itself.joint_loss()) < 0.02);
+  CHECK(std::abs(by_itself.loss_in_company()) < 0.06);
+  CHECK(jammed.joint_loss() == Approx(0.2 * 0.8).margin(0.02));
+  CHECK(std::abs(jammed.loss_in_company()) < 0.06);
+  CHECK(collided.joint_loss() == Approx(-0.25).margin(0.01));
+  CHECK(collided.loss_in_company() == Approx(0.5).margin(0.01));
+}
+
+TEST_CASE("sure rows are those of the whole run, as far as they are known", "[statistics]") {
+  const StudyFrame two{{"S1"}, {"A", "B"}, {"working"}, 1.0};
+  Series sure{0, 1, 4, 6, {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1}};
+  const Profile profile = profile_of(two, one_trial(), std::span(&sure, 1));
+  DataShape shape = full_shape(two, Measured::Kind::series, 1, std::span(&sure, 1));
+  Series lost = sure;
+  for (const std::size_t row : {1, 3, 7}) lost.bits[2 * row] = lost.bits[2 * row + 1] = 0;
+  const auto joint_loss = [&] {
+    return DatasetStatistics(two, statistics_of(two, shape, profile, std::span(&lost, 1)))
+        .trial(0, TrialStatistic::joint_loss);
+  };
+  CHECK(joint_loss() == Approx(0.25));  // three of six
+  shape.runs[0].tail_known = {0, 0};
+  CHECK(joint_loss() == Approx(0.25));  // two of four
+  shape.runs[0].lead_known = {0, 0};
+  CHECK(joint_loss() == 0.0F);
 }

@@ -44,6 +44,7 @@ TEST_CASE("of a range about nothing either end counts", "[reconcile]") {
   REQUIRE(yaw.low < yaw.off);
   CHECK(range_end_of(fitted("sensor_yaw", yaw.name, 0.99 * yaw.low))->end == yaw.low);
   CHECK(range_end_of(fitted("sensor_yaw", yaw.name, 0.99 * yaw.high))->end == yaw.high);
+  CHECK_FALSE(range_end_of(fitted("warm_object", "heading_deg", 179.0)));  // all directions have no end
 }
 
 TEST_CASE("the strong end lies on the fitted side of none", "[reconcile]") {

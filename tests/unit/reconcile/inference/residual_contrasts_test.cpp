@@ -44,6 +44,7 @@ ContrastData drawn(const DataShape& shape, std::uint32_t number, const Chance& c
     }
   }
   data.joint_silence = joint_silence + 0.2 * stream.normal();
+  for (std::size_t run = 0; run < shape.runs.size(); ++run) data.shortest.push_back(1.0 + stream.index(3));
   return data;
 }
 
@@ -94,6 +95,30 @@ TEST_CASE("one repetition follows the other, and of three runs no session is tol
   DataShape three = shape_with(1);
   three.runs.resize(3);
   CHECK(told(three, drawn(three, 5, [](std::size_t place, auto) { return place < 1 ? 0.1 : 0.9; })).empty());
+}
+
+TEST_CASE("a hold that grows from trial to trial is told, and holds in any order are not", "[reconcile]") {
+  const DataShape shape = shape_with(1);
+  ContrastData held = drawn(shape, 7, usual);
+  held.shortest = {1, 1, 1, 2, 2, 3, 3, 4, 4, 4};
+  const auto found = told(shape, held);
+  REQUIRE(found.size() == 1);
+  CHECK(found.front().when == "from trial to trial");
+  CHECK(found.front().what == "motion, once begun, lasts longer and longer");
+  held.shortest = {3, 1, 4, 1, 2, 4, 1, 3, 4, 2};
+  CHECK(told(shape, held).empty());
+}
+
+TEST_CASE("the shortest stretch is of those that no end of the main part cuts off", "[reconcile]") {
+  DataShape shape = shape_with(1);
+  shape.runs.resize(1);
+  const auto shortest = [&](const std::vector<std::uint8_t>& of_a) {
+    Series run{0, 1, 0, of_a.size(), {}};
+    for (const std::uint8_t bit : of_a) run.bits.insert(run.bits.end(), {bit, 0});
+    return contrast_data(frame, shape, std::span(&run, 1)).shortest.front();
+  };
+  CHECK(shortest({1, 0, 1, 1, 1, 0, 1, 1, 0, 0, 1}) == 2.0);
+  CHECK(shortest({1, 0, 1, 1, unknown_bit, 0, 0, 1}) == 0.0);
 }
 
 TEST_CASE("silence at the same moments is told if it is oftener, not if it is less often", "[reconcile]") {

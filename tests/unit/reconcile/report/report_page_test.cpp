@@ -17,7 +17,7 @@ Location two_cells() {
   Location location;
   location.p = 0.01;
   location.n_simulated = 999;
-  location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
+  location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01, 7.0}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
   location.envelope = {{{"S1 PIR1 seconds", "seconds", "S1 PIR1"}, 2.0, 0.0, -1.0, 0.5, 0.01},
                        {mean_of("longest_gap"), -0.5, 0.0, -1.0, 1.0, 0.9}};
   return location;
@@ -196,7 +196,7 @@ TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   CHECK_FALSE(says(page(), "of what can be closed"));
   CHECK(says(page(), "as near to the model as two of its own runs"));
   outcome.verification->closed = true;
-  CHECK(says(page(), "the simulation with what was applied agrees with the data."));
+  CHECK(says(page(), "the simulation with soft_zone_edges agrees with the data."));
   outcome.verification->noise_floor = outcome.verification->before.energy_score + 1.0;
   CHECK(says(page(), "was as near to these trials already"));
 }

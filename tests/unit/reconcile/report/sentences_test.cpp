@@ -51,6 +51,8 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
       contains("None of the 3 cells (one trial at one sensor) differs by more than chance, but everything together "
                "does (p = 0.0132)."));
   outcome.location.cells.front().adjusted_p = 0.01;
+  CHECK_THAT(sentence(outcome), contains("None of the 3 cells"));  // off by less than it scatters
+  outcome.location.cells.front().scatters = -5.0;
   CHECK_THAT(
       sentence(outcome),
       contains(
@@ -299,12 +301,17 @@ TEST_CASE("what may be none of a set is looked for in data and model first", "[r
 }
 
 TEST_CASE("as long as people may be miscounted the counts come first", "[reconcile]") {
-  Outcome outcome = outcome_of(Verdict::one_of, {{"missed_triggers", 0.9}, {"people_miscounted", 0.05}});
-  CHECK_THAT(sentence(outcome), contains("Check the people counts first: "));
+  Outcome outcome = outcome_of(Verdict::one_of, {{"people_miscounted", 0.5}, {"missed_triggers", 0.2}});
+  CHECK_THAT(sentence(outcome), Catch::Matchers::StartsWith("Check the people counts first: "));
+  outcome.nothing.p = 0.3;
+  CHECK_THAT(sentence(outcome), Catch::Matchers::StartsWith("Check the people counts first: "));
+  outcome = outcome_of(Verdict::one_of, {{"missed_triggers", 0.9}, {"people_miscounted", 0.05}});
+  CHECK_THAT(sentence(outcome), Catch::Matchers::StartsWith("The measurement shows one of these"));
   CHECK_THAT(next_step(outcome), contains("check the people counts, mend them, and analyse again. If they are right, "
                                           "measure more before anything is applied; pirsim reconcile plan finds"));
   outcome.candidates.back().score.p = 0.01;
   CHECK_THAT(sentence(outcome), !contains("counts"));
+  CHECK_THAT(next_step(outcome), !contains("counts"));
 }
 
 TEST_CASE("a p that can't be smaller is told as a bound", "[reconcile]") {
@@ -328,13 +335,54 @@ TEST_CASE("where nothing differs it is said how little would have been seen", "[
       "in a cell (one trial at one sensor) would hardly have been seen.");
 }
 
-TEST_CASE("held-out trials agree, come closer, or show no improvement", "[reconcile]") {
-  Verification v;
-  CHECK(seen_on_held_out(v) == "On trials not used for fitting, no improvement could be demonstrated.");
+TEST_CASE("held-out trials agree with what was applied, come closer, or show no improvement", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  Verification& v = outcome.verification.emplace();
+  CHECK(seen_on_held_out(outcome) == "On trials not used for fitting, no improvement could be demonstrated.");
   v.shrunk = true;
-  CHECK_THAT(seen_on_held_out(v), contains("comes closer to the data."));
+  CHECK_THAT(seen_on_held_out(outcome), contains("the simulation with seat_shift comes closer to the data."));
   v.closed = true;
-  CHECK_THAT(seen_on_held_out(v), contains("agrees with the data."));
+  CHECK_THAT(seen_on_held_out(outcome), contains("the simulation with seat_shift agrees with the data."));
+  outcome.fits.clear();  // of a set, the likeliest of each fold
+  v.names = {"body_size", "seat_shift", "body_size"};
+  CHECK_THAT(seen_on_held_out(outcome), contains("the simulation with body_size or seat_shift agrees"));
+}
+
+TEST_CASE("no family is told of what explains hardly anything of the held-out trials", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}});
+  outcome.family = {effects::Family::person, 0.9};
+  Verification& v = outcome.verification.emplace();
+  v.names = {"seat_shift", "seat_shift", "body_size"};
+  v.share_closed = 0.3;
+  CHECK_THAT(sentence(outcome), contains("family person"));
+  v.share_closed = 0.15;
+  CHECK_THAT(sentence(outcome), !contains("family"));
+}
+
+TEST_CASE("an angle that may be any is told as not determined", "[reconcile]") {
+  FittedEffect fan{{"warm_object", {}, {}, {}}, {{"heading_deg", "deg", 20.0, {-100.0, 102.0}, 0.0, false, {}}}, false};
+  CHECK_THAT(in_words(fan), contains("heading not determined") && !contains("102"));
+  fan.parameters.front().interval = {-60.0, 80.0};
+  CHECK_THAT(in_words(fan), contains("heading 20 deg (90 % interval -60 to 80)"));
+}
+
+TEST_CASE("the strongest deviation is told with its part of the trial, if it is more than scatter", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {});
+  outcome.location.cells.resize(3);
+  outcome.location.strongest = Deviation{"", Deviation::Part::before, 6.0, 30.0, -9.0};
+  CHECK_THAT(sentence(outcome), contains("Strongest before the main part: all sensors 80 % less (6.0 s with motion a "
+                                         "trial, 30.0 s expected)."));
+  outcome.location.strongest->scatters = -2.0;
+  CHECK_THAT(sentence(outcome), !contains("Strongest"));
+}
+
+TEST_CASE("beside a cell outside its own range what to do next is never nothing", "[reconcile]") {
+  Outcome outcome;
+  outcome.location.cells = {{"S1", "PIR3", 119.0, 9.0, 2.0, 20.0, 0.2, 6.0}, {"S2", "PIR3", 8.0, 9.0, 2.0, 20.0}};
+  CHECK_THAT(next_step(outcome), contains("see whether PIR3 hangs as drawn and S1 went as written (119 s with motion, "
+                                          "usually 2 to 20 s). 1 of 2 cells"));
+  outcome.location.cells.erase(outcome.location.cells.begin());
+  CHECK_THAT(next_step(outcome), contains("nothing"));
 }
 
 TEST_CASE("a strength at the end of what was looked for is told, and what lies beyond", "[reconcile]") {
