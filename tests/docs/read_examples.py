@@ -121,10 +121,13 @@ class Reader:
         self.write("rows.csv", "".join(",".join(row) + "\n" for row in rows))
         self.run("control", "-q", "rows.csv", "--rule", self.write("rule.yaml", text))
 
+    def plan(self, text):
+        self.run("room", "-q", "--home", "--plan", self.write("plan.yaml", text), "-o", "flat.gltf")
+
     def whole(self, text):
         kinds = {"pirsim_script:": self.script, "pirsim_recipe:": self.recipe, "pirsim_nuisance:": self.nuisance,
                  "pirsim_placements:": self.placements, "pirsim_marks:": self.marks, "pirsim_log:": self.log_map,
-                 "pirsim_control:": self.rule, "id:": self.sensor}
+                 "pirsim_control:": self.rule, "pirsim_plan:": self.plan, "id:": self.sensor}
         [kind] = [read for key, read in kinds.items() if text.startswith(key)]
         kind(text)
 
