@@ -187,8 +187,7 @@ CLI::Option* offer_drawing(CLI::App& command) {
   of_home("--sensors-at", "sensors_at", "WORD", "room or doorway: a sensor in each (default: room)");
   of_home("--mount", "mount", "WORD", "corner or ceiling, of sensors in rooms (default: corner)");
   of_home("--model", "model", "NAME", "of sensors, or [NAME,...]: one is drawn for each");
-  offer_input_file(command, "--plan", options.plan, "a flat that somebody has: docs/formats/plan.md")
-      ->needs(home);
+  offer_input_file(command, "--plan", options.plan, "a flat that somebody has: docs/formats/plan.md")->needs(home);
   setting("Options", "--height", "height_m", "M", "of the ceiling");
   offer_input_file(command, "RECIPE", options.recipe, "take the ranges of its rooms: docs/formats/dataset.md");
   command

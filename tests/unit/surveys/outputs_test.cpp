@@ -54,11 +54,12 @@ TEST_CASE("what isn't known of people is empty, not 0") {
     const std::size_t at = text.find("desk,1,");
     return text.substr(at, text.find('\n', at) - at) + advise(costs.lights.front()).sentence;
   };
-  CHECK_THAT(line_of(People::unknown, -1), contains("desk,1,1,1,,0.516667,,,0.516667,,,1,,,,,,,,,,desk: whom it goes"));
+  CHECK_THAT(line_of(People::unknown, -1),
+             contains("desk,1,1,1,,0.516667,,,0.516667,,,1,,,,,,,,,,,,,,desk: whom it goes"));
   // Nobody came: no time in which it could have gone off on somebody.
   CHECK_THAT(line_of(People::known, 0),
-             contains("desk,1,1,1,0,0.516667,0.516667,0,0.516667,,,1,0,,,,,,,0,,desk: nobody"));
-  CHECK_THAT(line_of(People::known, -1), contains("desk,1,0,0,0,0,0,0,,,,0,0,,,,,,,0,,desk: nothing is known"));
+             contains("desk,1,1,1,0,0.516667,0.516667,0,0.516667,,,1,0,,,,,,,0,,,0.516667,,,desk: nobody"));
+  CHECK_THAT(line_of(People::known, -1), contains("desk,1,0,0,0,0,0,0,,,,0,0,,,,,,,0,,,,,,desk: nothing is known"));
 }
 
 // -------------------------------------------------------------------------------------------- which delay to take
