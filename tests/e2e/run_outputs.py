@@ -68,6 +68,9 @@ def needed(command, *given):
     words = []
     while True:
         told = pirsim(*command, *ordered([(option, "nowhere") for option in given], words)).stderr
+        if flag := re.match(r"error: \S+ requires (--\S+)", told):
+            words.append(flag[1])
+            continue
         asked = re.match(r"error: (\S+) is required", told)
         if asked is None:
             return words
