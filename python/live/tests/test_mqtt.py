@@ -164,7 +164,10 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
             known += [(at - 3600, name, None) for name in names]
         elif happens < 0.06:  # a message that the broker keeps for whoever comes later, and is older than that
             house.say(sensor, "ON", retain=True)
-            known.append((at, sensor, True))
+            house.say(sensor, "OFF")
+            known += [(at, sensor, True), (at, sensor, False)]
+            at += 90
+            house.go_to(at)
             house.client.unsubscribe(f"house/{sensor}")
             house.client.subscribe(f"house/{sensor}", 1)
             wanted = house.heard + 1
@@ -183,6 +186,17 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
     bits = bits_of(known, names, n)
     assert 0.02 < (bits == 2).mean() < 0.9 and (bits == 1).sum() > 20
     same(house.told, counting.load(file).estimate(bits, smoothed=False).probabilities)
+    house.stop()
+
+
+def test_a_clock_that_steps_back_begins_anew(broker, made, tmp_path):  # noqa: F811
+    house = House(broker, made(random.Random(6), sensors=1), tmp_path)
+    house.say("sensor_1", "ON")
+    house.go_to(T0 + 7200)
+    house.go_to(T0 + 3600 + 7, step=-3593)
+    assert house.counter.time == T0 + 3607 and house.counter.last is None
+    house.go_to(T0 + 3600 + 67)
+    assert house.told[-1].time == T0 + 3660 and not house.told[-1].known
     house.stop()
 
 

@@ -520,7 +520,8 @@ TEST_CASE("Days and hours of a counted log are what one sums up by hand, with ho
   add(0, {0.2, 0.8, 0.0});                           // the first date
   add(1, {1.0, 0.0, 0.0}), add(2, {0.0, 0.5, 0.5});  // 0:00 of the second
   add(3, {0.4, 0.1, 0.5}), add(4, {nan, nan, nan});  // 1:00
-  for (int i = 5; i < 48; ++i) add(i, {0.9, 0.1, 0.0});
+  add(5, {1.0, 0.0, 0.0}), add(6, {1.0, 0.0, 0.0});
+  for (int i = 7; i < 48; ++i) add(i, {0.9, 0.1, 0.0});
   add(48, {0.1, 0.0, 0.9});
   counts.figures_off.emplace();
   counts.figures_off->arrival_min = {3.0, 14.0};
@@ -531,7 +532,7 @@ TEST_CASE("Days and hours of a counted log are what one sums up by hand, with ho
   CHECK(days[0].departure == "00:00:00");
   CHECK(days[0].figures.occupied_h == Approx(0.4));
   CHECK(days[1].figures.told_h == Approx(23.5));
-  CHECK(days[1].figures.occupied_h == Approx(0.5 * (1.0 + 0.6 + 43 * 0.1 + 0.9)));
+  CHECK(days[1].figures.occupied_h == Approx(0.5 * (1.0 + 0.6 + 41 * 0.1 + 0.9)));
   CHECK(days[1].arrival == "00:30:00");
   CHECK(days[1].departure == "00:00:00");
   CHECK(days[1].figures.most == 2);
@@ -541,6 +542,8 @@ TEST_CASE("Days and hours of a counted log are what one sums up by hand, with ho
   CHECK(hours[0].mean == Approx(0.75));
   CHECK(hours[0].nobody == Approx(0.5));
   CHECK(hours[1].mean == Approx(1.1));  // of what is told
+  CHECK(hours[1].off);
+  CHECK_FALSE(hours[2].off);  // nobody comes: errors of hours with people say nothing of it
   CHECK(hours[23].days == 2);
   CHECK(hours[23].nobody == Approx(0.5 * (0.2 + 0.5)));
   CHECK(hours[23].most == Approx(0.5 * (1.0 + 2.0)));

@@ -235,6 +235,7 @@ TEST_CASE("Costs to expect are means over the draws, with the middle of them") {
   CHECK(costs.at(2.0).false_offs == Approx(17.0 / 21.0));           // 3 lit minutes: of 0 to 3 it goes off on nobody
   CHECK(costs.at(2.0).dark_h * 60.0 == Approx(17.0 * 9.0 / 21.0));  // 1 to 17
   CHECK(costs.at(2.0).lit_empty_h * 60.0 == Approx((3.0 + 2.0 + 1.0) / 21.0));
+  CHECK(costs.by_nobody.front().lit_empty_h * 60.0 == Approx(30.0));  // by a counter that is never sure it stays lit
   REQUIRE(costs.at(2.0).dark_share.over_days);
   CHECK(costs.at(2.0).dark_share.over_days->low == 0.0);
   CHECK(costs.at(2.0).dark_share.over_days->high == Approx(16.0 / 19.0));  // the 19th of those with somebody
