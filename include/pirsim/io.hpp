@@ -93,7 +93,7 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 // The data that comes with pirsim, found by name.
 
 /// Its kinds. Each is a folder of data/.
-enum class DataKind { rooms, studies, recipes, sensors, measured };
+enum class DataKind { rooms, plans, studies, recipes, sensors, measured };
 /// "rooms".
 [[nodiscard]] std::string_view folder_of(DataKind kind);
 

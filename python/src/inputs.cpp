@@ -27,8 +27,8 @@ nb::dict defaults() {
 
 std::string find_file(const std::string& file, const std::string& kind,
                       const std::vector<std::filesystem::path>& data) {
-  for (const auto known : {io::DataKind::rooms, io::DataKind::studies, io::DataKind::recipes, io::DataKind::sensors,
-                           io::DataKind::measured}) {
+  for (const auto known : {io::DataKind::rooms, io::DataKind::plans, io::DataKind::studies, io::DataKind::recipes,
+                           io::DataKind::sensors, io::DataKind::measured}) {
     if (io::folder_of(known) == kind) return io::find_file(file, known, data).string();
   }
   throw nb::value_error("kind: not a folder of the data");

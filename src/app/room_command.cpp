@@ -121,7 +121,7 @@ void draw(const DrawOptions& options) {
   if (!options.plan.empty()) {
     if (!options.recipe.empty() || !options.as_typed.empty())
       throw Error(ErrorCode::usage, "--plan says what the flat is like: no recipe, and no other options but --set");
-    const auto plan = dataset::read_home_plan(found(io::DataKind::recipes, options.plan), options.settings);
+    const auto plan = dataset::read_home_plan(found(io::DataKind::plans, options.plan), options.settings);
     return write(options, dataset::draw_flat(plan, options.seed.value_or(1), options.number, scenes));
   }
   if (options.recipe.empty()) {

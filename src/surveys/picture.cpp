@@ -222,6 +222,7 @@ struct Label {
 struct Marks {
   std::vector<rt::Beam> lines;
   std::vector<Label> labels, people;
+  std::vector<std::pair<std::string, rt::Colour>> of_people;  ///< in the key: "person mia"; a pet has its name alone
   std::optional<rt::Beam> scale;
 };
 
@@ -289,7 +290,9 @@ void mark_people(const State& state, Marks& marks) {
     if (shapes.empty()) continue;
     const Bounds head = bounds(shapes.at(static_cast<std::size_t>(body::Part::head)));
     const Vec3f top(0.5F * (head.lower.x + head.upper.x), head.upper.y, 0.5F * (head.lower.z + head.upper.z));
-    marks.people.push_back({Vec3(top) + Vec3(0.0, above_m, 0.0), actors[i].person().spec.id, shirt_of(i)});
+    const std::string& id = actors[i].person().spec.id;
+    marks.people.push_back({Vec3(top) + Vec3(0.0, above_m, 0.0), id, shirt_of(i)});
+    marks.of_people.emplace_back(actors[i].is_pet() ? id : "person " + id, shirt_of(i));
   }
 }
 
@@ -378,7 +381,7 @@ Key key_of(const PictureSpec& spec, const SceneSpec& scene, const Marks& marks) 
   if (wanted(Mark::doors)) key.entries.emplace_back("door", door_colour);
   if (wanted(Mark::areas) && !scene.areas.empty()) key.entries.emplace_back("area", area_colour);
   if (marks.people.size() <= most_people) {
-    for (const Label& person : marks.people) key.entries.emplace_back("person " + person.text, person.colour);
+    key.entries.insert(key.entries.end(), marks.of_people.begin(), marks.of_people.end());
   } else {
     key.entries.emplace_back("people: name and shirt have one colour", scale_colour);
   }

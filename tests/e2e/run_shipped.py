@@ -10,7 +10,8 @@ import subprocess
 
 from program import DATA, PIRSIM, Case, main, run
 
-KINDS = {"rooms": ".gltf", "studies": ".yaml", "recipes": ".yaml", "sensors": ".yaml", "measured": ".csv"}
+KINDS = {"rooms": ".gltf", "plans": ".yaml", "studies": ".yaml", "recipes": ".yaml", "sensors": ".yaml",
+         "measured": ".csv"}
 SHORT = "--replicates", "1", "--set", "trials.for_each.seat=[S8]", "-q"
 
 
@@ -126,11 +127,11 @@ class Shipped(Case):
             if "reference:" in copy.read_text():
                 pirsim("--scene", "meeting_room.gltf", "--script", copy, *SHORT, "--summary", "sums.md", cwd=self.folder)
                 self.assertIn("| S8 | real | 22 |", (self.folder / "sums.md").read_text())
-        for recipe in sorted((DATA / "recipes").iterdir()):
-            copy = shutil.copy(recipe, self.folder / f"my_{recipe.name}")
-            room = ("room", "--home", "--plan") if "\npirsim_plan: 1" in pathlib.Path(copy).read_text() else ("room",)
-            self.assertIn("'x.txt' must end in", pirsim(*room, copy, "-o", "x.txt", code=2, cwd=self.folder))
-            pirsim(*room, copy, "-o", "a.gltf", "-q", cwd=self.folder)
+        for kind, room in (("recipes", ["room"]), ("plans", ["room", "--home", "--plan"])):
+            for file in sorted((DATA / kind).iterdir()):
+                copy = shutil.copy(file, self.folder / f"my_{file.name}")
+                self.assertIn("'x.txt' must end in", pirsim(*room, copy, "-o", "x.txt", code=2, cwd=self.folder))
+                pirsim(*room, copy, "-o", "a.gltf", "-q", cwd=self.folder)
 
     def test_what_a_file_names_is_beside_it_or_shipped_and_has_its_place_in_messages(self):
         head = "pirsim_script: 1\nduration_s: 5\n"

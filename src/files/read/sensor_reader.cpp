@@ -31,6 +31,7 @@ struct ShippedKind {
 
 constexpr std::array shipped_kinds{
     ShippedKind{DataKind::rooms, "rooms", {".gltf", ".glb"}},
+    ShippedKind{DataKind::plans, "plans", {".yaml", ".yml"}},
     ShippedKind{DataKind::studies, "studies", {".yaml", ".yml"}},
     ShippedKind{DataKind::recipes, "recipes", {".yaml", ".yml"}},
     ShippedKind{DataKind::sensors, "sensors", {".yaml", ".yml"}},

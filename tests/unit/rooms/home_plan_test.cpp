@@ -56,7 +56,7 @@ std::string plan_fault(const std::string& text) {
   return "";
 }
 
-DrawnFlat shipped_home(int number = 1) { return home_of(read_home_plan(test::data("recipes/my_flat.yaml")), number); }
+DrawnFlat shipped_home(int number = 1) { return home_of(read_home_plan(test::data("plans/my_flat.yaml")), number); }
 
 const AreaSpec& area_named(const SceneSpec& scene, const std::string& id) {
   return *std::ranges::find(scene.areas, id, &AreaSpec::id);
