@@ -83,6 +83,9 @@ struct SensorSight {
   double longest_m = 0.0;          ///< of the rays as cut
   std::string outside;             ///< how far outside of the room it hangs, in words; empty: it doesn't
   std::size_t places = 0;          ///< places of the floor where a zone sees a standing person
+  std::string area;                ///< that it watches, or no text
+  std::size_t area_places = 0;     ///< of that area
+  std::size_t area_seen = 0;       ///< of these, where a zone sees a standing person
   std::vector<std::string> seats;  ///< seats where a zone sees a sitter at rest
   [[nodiscard]] bool sees_nothing() const noexcept { return places == 0 && seats.empty(); }
 };

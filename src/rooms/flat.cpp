@@ -137,6 +137,7 @@ class FlatFurnisher {
     build_shell(plan_, flat_.height_m, flat_.scene);
     for (const bool has_place : {true, false}) {
       for (std::size_t i = 0; i < own.rooms.size(); ++i) {
+        asked_in_ = &own.rooms[i].id;
         for (const PlanPieceSpec& piece : own.rooms[i].furniture.value_or(std::vector<PlanPieceSpec>{}))
           if (is_placed(piece) == has_place) add_piece(floors_[i], piece);
       }
@@ -180,7 +181,9 @@ class FlatFurnisher {
   enum class Wanted { always, if_it_fits };
 
   void fail(const std::string& reason) {
-    if (lacking_.empty()) lacking_ = reason;
+    if (!lacking_.empty()) return;
+    lacking_ = reason;
+    if (asked_ != nullptr) lacking_ += " in '" + *asked_in_ + "', line " + std::to_string(asked_->where.line);
   }
 
   /// Of what has no leaf, so much as a usual door is wide.
@@ -546,10 +549,11 @@ class FlatFurnisher {
     Rectangle area;
     std::string fault;  ///< of what is put there
   };
-  std::vector<Taken> taken_;              ///< by doors, and by what a plan gives a place
-  const PlanPieceSpec* asked_ = nullptr;  ///< what is put down, if a plan asks for it
-  Diagnostics* faults_ = nullptr;         ///< of a plan
-  std::map<std::string, int> numbers_;    ///< of things by kind
+  std::vector<Taken> taken_;               ///< by doors, and by what a plan gives a place
+  const PlanPieceSpec* asked_ = nullptr;   ///< what is put down, if a plan asks for it
+  const std::string* asked_in_ = nullptr;  ///< in this room
+  Diagnostics* faults_ = nullptr;          ///< of a plan
+  std::map<std::string, int> numbers_;     ///< of things by kind
   int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
 };
 

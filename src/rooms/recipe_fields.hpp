@@ -206,7 +206,7 @@ struct Fields<dataset::PlanRoomSpec> {
       FIELD(id, "required; its area's name in rows"),
       FIELD(kind, "required; by it the room is furnished if `furniture` is missing"),
       FIELD(x_m, accepted::on_page_m,
-            "required; [left, right]: up to the middle of inner walls, to the face of outer ones"),
+            "required; [left, right]: up to the middle of inner walls, to the inner face of outer ones"),
       FIELD(y_m, accepted::on_page_m, "required; [bottom, top]"),
       FIELD(area, "default its id; rooms of one area have no wall between them: an L-shaped room"),
       FIELD(furniture),

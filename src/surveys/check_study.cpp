@@ -531,14 +531,19 @@ std::vector<Issue> warnings_of_home(const sim::CompiledStudy& study) {
   const auto has_household = [](const sim::TrialModel& trial) { return trial.schedule && trial.schedule->household; };
   const auto home = std::ranges::find_if(study.trials(), has_household);
   if (home == study.trials().end()) return {};
-  const bool someone_works_there = std::ranges::any_of(home->schedule->household->residents, [](const auto& resident) {
-    return resident.occupation == Occupation::works_at_home;
-  });
+  const auto& residents = home->schedule->household->residents;
+  const bool someone_works_there = std::ranges::any_of(
+      residents, [](const auto& resident) { return resident.occupation == Occupation::works_at_home; });
   GroupedWarnings lacking;
   for (std::size_t i = 0; i < sim::n_home_activities; ++i) {
     if (activity_of(i) == HomeActivity::work && !someone_works_there) continue;
     const sim::HomeManner manner = sim::manner_of(activity_of(i));
-    if (sim::has_place_for(study.scene(), activity_of(i))) continue;
+    const std::size_t n_places = sim::n_places_for(study.scene(), activity_of(i));
+    if (activity_of(i) == HomeActivity::eat && n_places > 0 && n_places < residents.size())
+      lacking.add("few places", home->schedule->where, manner.phase,
+                  "household: " + counted(n_places, "place") + " for eating and " +
+                      counted(residents.size(), "resident") + ": the others eat where they rest");
+    if (n_places > 0 || manner.uses.empty()) continue;
     lacking.add("no place", home->schedule->where, manner.phase,
                 std::string("household: no place for ") + manner.phase + " (`for: [" +
                     std::string(manner.uses.front()) + "]` in its mark): residents do that where they are");

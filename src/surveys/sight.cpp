@@ -18,6 +18,7 @@
 #include "engine/sim/schedule.hpp"
 #include "model/core/error.hpp"
 #include "model/core/parallel.hpp"
+#include "model/core/text.hpp"
 #include "model/geom/floor.hpp"
 #include "model/schema/actions.hpp"
 #include "model/schema/check_scene.hpp"
@@ -368,10 +369,12 @@ SightReport look_around(const Model& model) {
   const body::WalkableFloor floor(scene.floor, {}, scene.meshes, humanoid.clearance_radius_m());
   Onlooker onlooker(model, humanoid);
 
+  const Areas areas(scene);
   SightReport report;
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     SensorSight& sight = report.sensors.emplace_back();
     sight.sensor = scene.sensors[i].id;
+    if (areas.of_sensors()[i]) sight.area = areas.name_of_sensor(i);
     sight.outside = hangs_outside(scene.floor, scene.sensors[i].world_from_sensor.origin);
     count_rays(model, i, sight);
   }
@@ -383,7 +386,14 @@ SightReport look_around(const Model& model) {
       const std::vector<bool> seen = onlooker.sensors_that_see(standing.posture());
       ++report.places;
       if (std::ranges::find(seen, true) != seen.end()) ++report.places_seen_by_any;
-      for (std::size_t i = 0; i < seen.size(); ++i) report.sensors[i].places += seen[i] ? 1 : 0;
+      for (std::size_t i = 0; i < seen.size(); ++i) {
+        SensorSight& sight = report.sensors[i];
+        const std::size_t one = seen[i] ? 1 : 0;
+        sight.places += one;
+        if (sight.area.empty() || areas.name_at({x, z}) != sight.area) continue;
+        ++sight.area_places;
+        sight.area_seen += one;
+      }
     }
   }
   for (const SeatSpec& seat : scene.seats) {
@@ -405,10 +415,19 @@ std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
 }
 
 std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
+  constexpr double least_of_area = 0.1;  // assumed (0.05-0.2): a sensor in a corner sees more, one in a doorway too
   if (is_told_of_unit(scene)) return {};
   GroupedWarnings blind;
   for (const SensorSight& sight : report.sensors) {
-    if (sight.sees_nothing()) note_blind(sight, scene.name, blind);
+    if (sight.sees_nothing()) {
+      note_blind(sight, scene.name, blind);
+    } else if (static_cast<double>(sight.area_seen) < least_of_area * static_cast<double>(sight.area_places)) {
+      const std::string name = "sensor '" + sight.sensor + "'";
+      blind.add("hidden", {scene.name, 0, 0}, name,
+                name + " sees a standing person in " + std::to_string(sight.area_seen) + " of " +
+                    counted(sight.area_places, "place") + " of its area '" + sight.area +
+                    "' (is something before it?)");
+    }
   }
   Diagnostics remarks;
   blind.tell(remarks);

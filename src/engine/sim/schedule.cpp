@@ -522,7 +522,7 @@ class HomeDayPlan {
 
   DayPlan take() {
     planned_ = in_order();
-    for (PlannedStay& planned : planned_) planned.spot = spot_for(planned.person, planned.stay);
+    for (PlannedStay& planned : planned_) take_spot(planned);
     for (const PlannedStay& planned : planned_) spend(planned.person, planned.stay, planned.spot);
     DayPlan plan;
     for (std::size_t i = 0; i < trial_.people.size(); ++i)
@@ -560,6 +560,8 @@ class HomeDayPlan {
       state_[person] = State::away;
       return;
     }
+    // Whoever finds the toilet taken goes on with what they did.
+    if (spot == nullptr && state_[person] == State::present && is_alone_at(stay.activity)) return;
     if (state_[person] == State::unborn && part.part == SchedulePart::resident) {
       line.at(stay.from_s, action::Appear{{}, 0.0, part.seat});
     } else if (state_[person] != State::present) {
@@ -675,10 +677,8 @@ class HomeDayPlan {
   [[nodiscard]] bool is_private(std::size_t room, std::size_t person, double at_s) const {
     return std::ranges::any_of(planned_, [&](const PlannedStay& planned) {
       const auto [activity, from_s, to_s] = planned.stay;
-      const bool alone =
-          activity == HomeActivity::sleep || activity == HomeActivity::toilet || activity == HomeActivity::wash;
-      return alone && planned.person != person && planned.spot != nullptr && planned.spot->room == room &&
-             from_s <= at_s && at_s < to_s;
+      return (activity == HomeActivity::sleep || is_alone_at(activity)) && planned.person != person &&
+             planned.spot != nullptr && planned.spot->room == room && from_s <= at_s && at_s < to_s;
     });
   }
 
@@ -703,30 +703,45 @@ class HomeDayPlan {
     return is_standing == (posture == Posture::stand) ? activity : std::nullopt;
   }
 
-  /// Takes it. Sleepers have their own. Of others the first that is free, beginning with another for each person; none:
-  /// nullptr.
-  Spot* spot_for(std::size_t person, const HomeStay& stay) {
-    if (stay.activity == HomeActivity::away) return nullptr;
-    Spot* const spot = free_spot(person, stay, manner_of(stay.activity));
-    if (spot != nullptr) spot->taken_until_s = stay.to_s;
-    return spot;
+  static bool is_alone_at(HomeActivity activity) {
+    return activity == HomeActivity::toilet || activity == HomeActivity::wash;
   }
 
-  Spot* free_spot(std::size_t person, const HomeStay& stay, const HomeManner& manner) {
+  /// Sleepers have their own. Of others the first that is free, beginning with another for each person. Where none is,
+  /// they wait for a toilet or a place to wash, and do anything else where they could rest.
+  void take_spot(PlannedStay& planned) {
+    constexpr double least_s = minute_s;
+    auto& [person, stay, spot] = planned;
+    if (stay.activity == HomeActivity::away) return;
+    const HomeManner manner = manner_of(stay.activity);
+    spot = free_spot(person, stay, manner.uses);
+    if (spot == nullptr && is_alone_at(stay.activity)) {
+      for (Spot& one : spots_)
+        if (is_for(one, manner.uses.front()) && (spot == nullptr || one.taken_until_s < spot->taken_until_s))
+          spot = &one;
+      if (spot != nullptr && spot->taken_until_s + least_s > stay.to_s) spot = nullptr;
+      if (spot != nullptr) stay.from_s = spot->taken_until_s;
+    } else if (spot == nullptr) {
+      spot = free_spot(person, stay, manner_of(HomeActivity::rest).uses);
+    }
+    if (spot != nullptr) spot->taken_until_s = stay.to_s;
+  }
+
+  Spot* free_spot(std::size_t person, const HomeStay& stay, const std::vector<std::string_view>& uses) {
     const std::string& bed = trial_.people[person].spec.part->seat;
     if (stay.activity == HomeActivity::sleep && !bed.empty()) return &*std::ranges::find(spots_, bed, &Spot::id);
     const auto is_free = [&](const Spot& spot) {
       return spot.taken_until_s <= stay.from_s &&
              (spot.posture != Posture::sit || trial_.people[person].can_use(spot.id));
     };
-    for (const std::string_view use : manner.uses) {
-      std::vector<Spot*> fit;
+    for (const std::string_view use : uses) {
+      // Each person their own of those that are for it before all, then of those that will do; by others' beds, last.
+      std::array<std::vector<Spot*>, 4> ranks;
       for (Spot& spot : spots_)
-        if (is_for(spot, use)) fit.push_back(&spot);
-      // Each person their own of those that are for it before all, then of those that will do.
-      const auto others = std::ranges::stable_partition(fit, [&](Spot* spot) { return spot->uses.front() == use; });
-      const std::size_t n_first = fit.size() - others.size();
-      for (const std::span<Spot*> spots : {std::span(fit).first(n_first), std::span(fit).subspan(n_first)}) {
+        if (is_for(spot, use))
+          ranks[(spot.uses.front() == use ? 0 : 1) + (is_bedroom_of_others(spot.room, person) ? 2 : 0)].push_back(
+              &spot);
+      for (const std::vector<Spot*>& spots : ranks) {
         for (std::size_t k = 0; k < spots.size(); ++k)
           if (Spot* const spot = spots[(person + k) % spots.size()]; is_free(*spot)) return spot;
       }
@@ -734,6 +749,20 @@ class HomeDayPlan {
     for (Spot& spot : spots_)
       if (spot.uses.empty() && spot.posture == Posture::sit && is_free(spot)) return &spot;
     return nullptr;
+  }
+
+  /// Whether somebody has a bed there, but not this one.
+  [[nodiscard]] bool is_bedroom_of_others(std::size_t room, std::size_t person) const {
+    bool is_others = false;
+    for (std::size_t i = 0; i < trial_.people.size(); ++i) {
+      const auto& part = trial_.people[i].spec.part;
+      if (!part || part->seat.empty()) continue;
+      const auto bed = std::ranges::find(spots_, part->seat, &Spot::id);
+      if (bed == spots_.end() || bed->room != room) continue;
+      if (i == person) return false;
+      is_others = true;
+    }
+    return is_others;
   }
 
   const CompiledStudy& study_;
@@ -842,12 +871,13 @@ HomeManner manner_of(HomeActivity activity) {
   return {"away", std::nullopt, {}};
 }
 
-bool has_place_for(const SceneSpec& scene, HomeActivity activity) {
+std::size_t n_places_for(const SceneSpec& scene, HomeActivity activity) {
   const std::vector<std::string_view> uses = manner_of(activity).uses;
-  return uses.empty() || std::ranges::any_of(spots_of(scene), [&](const Spot& spot) {
-           return (spot.uses.empty() && spot.posture == Posture::sit) ||
-                  std::ranges::any_of(uses, [&](std::string_view use) { return is_for(spot, use); });
-         });
+  const std::vector<Spot> spots = spots_of(scene);
+  return static_cast<std::size_t>(std::ranges::count_if(spots, [&](const Spot& spot) {
+    return (spot.uses.empty() && spot.posture == Posture::sit) ||
+           std::ranges::any_of(uses, [&](std::string_view use) { return is_for(spot, use); });
+  }));
 }
 
 DayPlan plan_home_day(const CompiledStudy& study, std::uint32_t run) { return HomeDayPlan(study, run).take(); }

@@ -81,12 +81,12 @@ struct HomeManner {
 };
 [[nodiscard]] HomeManner manner_of(HomeActivity activity);
 
-/// Whether the scene has a place to do it: one whose mark says so, or a seat for anything.
-[[nodiscard]] bool has_place_for(const SceneSpec& scene, HomeActivity activity);
+/// The scene's places to do it: whose marks say so, and seats for anything.
+[[nodiscard]] std::size_t n_places_for(const SceneSpec& scene, HomeActivity activity);
 
 /// Residents lie in bed when the day begins. Whatever they do, they do at a place for it, or at a seat for anything;
-/// two share no place at one time. Where the scene has none that is free they stay where they are. The run is of a
-/// trial with a household.
+/// two share no place at one time. Where none is free they wait for the toilet, and do anything else where they could
+/// rest, or else where they are. The run is of a trial with a household.
 [[nodiscard]] DayPlan plan_home_day(const CompiledStudy& study, std::uint32_t run);
 
 }  // namespace pirsim::sim

@@ -13,6 +13,7 @@
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
+#include "surveys/sight.hpp"
 
 using namespace pirsim;
 using namespace pirsim::dataset;
@@ -82,6 +83,7 @@ TEST_CASE("what a plan can't have is told with its place", "[home_plan]") {
            {"wall: left, y_m: 2", "wall: left, y_m: 0.5", "plan.yaml:3:75: error: sofa isn't inside of its room"},
            {"wall: left, y_m: 2", "wall: bottom, x_m: 2", "sofa is in the way of door 'front'"},
            {"y_m: 3}", "y_m: 3}, {kind: shower, wall: right, y_m: 3.2}", "shower is where a toilet is"},
+           {"y_m: 3}", "y_m: 3}, {kind: bed, wall: right}", "there was no place for a bed in 'bath', line 4"},
            {"wall: left, y_m: 2", "x_m: 2", "x_m: to which `wall` is its back?"},
            {"corner: top_left", "corner: top_left, model: EKMC1604112", "EKMC1604111"},
            {"corner: top_left", "height_m: 2", "height_m: it looks down from the ceiling"}}) {
@@ -185,4 +187,28 @@ TEST_CASE("check counts beds and stoves as it does seats, and says which no sens
   CHECK(before.contains("stove"));
   std::erase_if(scene.sensors, [](const SensorSpec& sensor) { return sensor.area == "kitchen"; });
   CHECK_FALSE(noticed(scene).contains("stove"));
+}
+
+TEST_CASE("a sensor that hardly sees its own room is told, one that sees a tenth of it isn't", "[home_plan][seconds]") {
+  const SceneSpec scene = shipped_home().scene;
+  const CheckReport report =
+      check_study(compile(scene, test::shipped_script("flat_week.yaml", {"sensing.response=zones"})));
+  SightReport sight = report.sight;
+  std::size_t of_areas = 0;
+  for (SensorSight& sensor : sight.sensors) {
+    CAPTURE(sensor.sensor);
+    CHECK(sensor.area == sensor.sensor.substr(std::string("PIR_").size()));
+    CHECK(sensor.area_seen > sensor.area_places / 10);
+    CHECK(sensor.area_seen <= sensor.places);
+    of_areas += sensor.area_places;
+  }
+  CHECK(of_areas == sight.places);  // each room has one sensor
+  CHECK(studies::warnings(sight, scene).empty());
+  sight.sensors.front().area_places = 40;
+  sight.sensors.front().area_seen = 4;
+  CHECK(studies::warnings(sight, scene).empty());
+  sight.sensors.front().area_seen = 3;
+  const std::vector<Issue> told = studies::warnings(sight, scene);
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told.front().message, contains("sees a standing person in 3 of 40 places of its area 'living_room'"));
 }

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,6 +112,25 @@ TEST_CASE("each of a couple gets out of bed at their own side, while the other o
 
 namespace {
 
+/// What a day's plan has people do, and on which seat or place: {"eating", "table_1"}.
+std::set<std::pair<std::string, std::string>> deeds_of(const Model& model, std::uint32_t run) {
+  std::set<std::pair<std::string, std::string>> deeds;
+  for (const std::vector<ScriptedAction>& actions : sim::plan_home_day(model.compiled(), run)) {
+    std::string place;
+    for (const ScriptedAction& action : actions) {
+      if (const auto* sit = std::get_if<action::Sit>(&action.what)) place = sit->seat;
+      if (const auto* lie = std::get_if<action::Lie>(&action.what)) place = lie->place;
+      if (const auto* stand = std::get_if<action::Stand>(&action.what)) place = stand->place;
+      if (std::holds_alternative<action::Walk>(action.what) || std::holds_alternative<action::Enter>(action.what))
+        place.clear();
+      const bool stays =
+          std::holds_alternative<action::Wait>(action.what) || std::holds_alternative<action::Work>(action.what);
+      if (stays && !place.empty()) deeds.emplace(action.phase, place);
+    }
+  }
+  return deeds;
+}
+
 constexpr const char* ann_works_at_home = "schedule.household.residents.0.occupation=works_at_home";
 
 /// Seconds that the first of the people is at work by a day's plan, each on a seat for it.
@@ -144,6 +164,46 @@ bool lacks_place_for_work(const Model& model) {
 }
 
 }  // namespace
+
+TEST_CASE("with too few chairs residents eat on the sofa, and wait for the toilet", "[people]") {
+  SceneSpec scene = test::shipped_scene("flat.gltf");
+  std::erase_if(scene.seats,
+                [](const SeatSpec& seat) { return seat.id.starts_with("table_") && seat.id != "table_1"; });
+  const Model model = compile(std::move(scene), test::shipped_script("flat_week.yaml", {"sensing.response=zones"}));
+  std::set<std::string> eaten_at, toilets;
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
+    for (const auto& [what, place] : deeds_of(model, run)) {
+      if (what == "eating") eaten_at.insert(place);
+      if (what == "toilet") toilets.insert(place);
+    }
+  }
+  CHECK(eaten_at.contains("table_1"));
+  CHECK(eaten_at.size() > 1);
+  for (const std::string& place : eaten_at) CHECK((place == "table_1" || place.starts_with("sofa")));
+  CHECK(toilets == std::set<std::string>{"wc"});
+  const auto tells = [](const Issue& warning) {
+    return warning.message == "household: 1 place for eating and 2 residents: the others eat where they rest";
+  };
+  CHECK(std::ranges::any_of(check_study(model).warnings, tells));
+  CHECK(std::ranges::none_of(check_study(flat()).warnings, tells));
+}
+
+TEST_CASE("nobody works beside another one's bed while there is another place", "[people]") {
+  SceneSpec scene = test::shipped_scene("flat.gltf");
+  const auto desks = [](const SceneSpec& of) {
+    const Model model =
+        compile(of, test::shipped_script("flat_week.yaml", {"sensing.response=zones", ann_works_at_home}));
+    std::set<std::string> at;
+    for (std::uint32_t run = 0; run < model.n_runs(); ++run)
+      for (const auto& [what, place] : deeds_of(model, run))
+        if (what == "working") at.insert(place);
+    return at;
+  };
+  CHECK(desks(scene) == std::set<std::string>{"desk_chair"});
+  PlaceSpec& bed = *std::ranges::find(scene.places, "bed_right", &PlaceSpec::id);
+  bed.world_from_place.origin = {7.4, 0.5, -5.6};  // in the study
+  CHECK(desks(scene) == std::set<std::string>{"table_1"});
+}
 
 TEST_CASE("who works at home does so on a seat for work, for as long as the day has it", "[people]") {
   const auto compiled = [](SceneSpec scene, const std::vector<std::string>& overrides) {
