@@ -194,6 +194,38 @@ TEST_CASE("a pet goes through an open door and not through a shut one, and a cat
   CHECK(diary(PetKind::dog, DoorState::open).highest_m == 0.0);
 }
 
+TEST_CASE("a cat leaves a sofa alone on which somebody lies", "[people][seconds]") {
+  ScriptSpec script = script_with_pet(PetKind::cat, 43200.0);
+  script.trials.front().people = {test::person(
+      "ann", {test::act(action::Appear{{}, 0.0, "sofa"}), test::act(action::Wait{43100.0})})};
+  CHECK(diary_of(compile(rooms_with_door(DoorState::open), script), 0).highest_m == 0.0);
+}
+
+TEST_CASE("a dog gets up a tenth as often by night as by day", "[people][seconds]") {
+  ScriptSpec script = test::shipped_script("flat_week.yaml", {"sensing.response=zones", "sensing.tick_rate_hz=5"});
+  script.trials.front().pets = {pet(PetKind::dog)};
+  const Model model = compile(test::shipped_scene("flat.gltf"), script);
+  const sim::CompiledStudy& study = model.compiled();
+  int by_night = 0, by_day = 0;
+  for (std::uint32_t run = 0; run < 3; ++run) {
+    sim::RunState state(study, run);
+    bool lay = true;
+    while (!state.finished) {
+      sim::move_tick(study, state);
+      const bool lies = state.crowd.actors().back().motion().outline().fall == 1.0;
+      const double begin_s = study.clock_of(run)->begin_second();
+      const double hour = std::fmod(begin_s + static_cast<double>(state.tick) * study.tick_s(), 86400.0) / 3600.0;
+      if (lay && !lies) ++(hour >= 23.0 || hour < 6.0 ? by_night : by_day);
+      lay = lies;
+    }
+  }
+  // Bouts come at 24 a day: 51 by day, 2.1 by night, each with the standard error of a Poisson number; 21 if nights were
+  // days.
+  CHECK(by_day > 51 - 3 * 7);
+  CHECK(by_day < 51 + 3 * 7);
+  CHECK(by_night < 8);
+}
+
 TEST_CASE("people do the same with a cat as without, and nobody counts it", "[people][seconds]") {
   const SceneSpec scene = test::shipped_scene("flat.gltf");
   ScriptSpec script = test::shipped_script("flat_week.yaml", {"sensing.response=zones", "sensing.tick_rate_hz=10"});
