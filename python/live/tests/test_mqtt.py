@@ -23,11 +23,26 @@ from pirsim_live.mqtt import Bridge, Source, state_of  # noqa: E402
 
 @pytest.mark.parametrize("payload, key, state", [
     (b"ON", None, True), (b"off", None, False), (b"1", None, True), (b" 0 ", None, False), (b"unavailable", None, None),
-    (b"", None, None), (b"\xff", None, None), (b'"on"', None, True), (b"true", None, True), (b"null", None, False),
+    (b"", None, None), (b"\xff", None, None), (b'"on"', None, True), (b"true", None, True), (b"null", None, None),
     (b'{"occupancy": true, "battery": 97}', None, True), (b'{"state": "OFF"}', None, False),
-    (b'{"pir": 1, "occupancy": false}', "pir", True), (b'{"occupancy": null}', None, False)])
+    (b'{"pir": 1, "occupancy": false}', "pir", True), (b'{"occupancy": null}', None, None)])
 def test_messages(payload, key, state):
     assert state_of(payload, key) is state
+
+
+@pytest.mark.parametrize("options, told", [
+    (["--name", "a b"], "--name"), (["--off-at", "90"], "off_at"), (["--state", "nowhere/x"], "--state"),
+    (["--ca", "ca.pem"], "--tls"), (["--tls", "--ca", "ca.pem"], "no file 'ca.pem'"), (["--password-file", "p"], "--user"),
+    (["--counter", "nonsense.json"], "nonsense.json: isn't a counter"), (["--sensor", "a=t", "--sensor", "b=t"], "one topic")])
+def test_faults_are_told_before_anything_is_connected(options, told, tmp_path):
+    two = random_counter(random.Random(1), 2) | {"sensor_names": ["a", "b"]}
+    (tmp_path / "counter.json").write_text(json.dumps(two))
+    (tmp_path / "nonsense.json").write_text("{]")
+    (tmp_path / "options.txt").write_text("# of the hall\n--broker 127.0.0.1 --port 1\n--counter counter.json\n")
+    sensors = [] if "--sensor" in options else ["--sensor", "a=t/a", "--sensor", "b=t/b"]
+    done = subprocess.run([sys.executable, "-m", "pirsim_live", "mqtt", "@options.txt", *sensors, *options], cwd=tmp_path,
+                          capture_output=True, text=True, timeout=20)
+    assert done.returncode == 2 and told in done.stderr, done.stderr
 
 
 def test_json_without_a_state_says_nothing_and_topics_are_told_apart():

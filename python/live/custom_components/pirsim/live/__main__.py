@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
+import re
+import shlex
 import signal
 import sys
 
@@ -11,13 +14,18 @@ from . import __version__
 from .counter import Counter
 
 
+class _Parser(argparse.ArgumentParser):
+    def convert_arg_line_to_args(self, arg_line: str) -> list[str]:
+        return shlex.split(arg_line, comments=True)
+
+
 def _options() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="pirsim-live", description="count people live, by a counter of pirsim calibrate",
-                                     fromfile_prefix_chars="@")
+    parser = _Parser(prog="pirsim-live", description="count people live, by a counter of pirsim calibrate",
+                     fromfile_prefix_chars="@")
     parser.add_argument("--version", action="version", version=__version__)
     commands = parser.add_subparsers(dest="command", required=True)
     mqtt = commands.add_parser("mqtt", help="from topics of motion sensors to people, P(nobody) and occupancy",
-                               fromfile_prefix_chars="@", epilog="@FILE: options from a file, one a line")
+                               fromfile_prefix_chars="@", epilog="@FILE: options from a file, as on the command line; # begins a comment")
     mqtt.add_argument("--counter", metavar="FILE", required=True, help="counter.json of pirsim calibrate")
     mqtt.add_argument("--broker", metavar="HOST", required=True)
     mqtt.add_argument("--port", metavar="N", type=int, help="default: 1883, or 8883 with --tls")
@@ -34,7 +42,23 @@ def _options() -> argparse.ArgumentParser:
     return parser
 
 
+def _check(options: argparse.Namespace) -> None:
+    """Before anything is connected. Raises ValueError."""
+    faults = [
+        (not re.fullmatch("[A-Za-z0-9_-]+", options.name), "--name: letters, digits, - and _ alone: Home Assistant asks for that"),
+        (options.password_file is not None and options.user is None, "--password-file: of which --user?"),
+        (options.ca is not None and not options.tls, "--ca goes with --tls"),
+        (options.ca is not None and not os.path.isfile(options.ca), f"--ca: there is no file {options.ca!r}"),
+        (options.state is not None and not os.path.isdir(os.path.dirname(os.path.abspath(options.state))),
+         f"--state: there is no folder for {options.state!r}"),
+    ]
+    for is_fault, told in faults:
+        if is_fault:
+            raise ValueError(told)
+
+
 def _run_mqtt(options: argparse.Namespace) -> None:
+    _check(options)
     import paho.mqtt.client as paho
 
     from .mqtt import Bridge, Source

@@ -97,13 +97,14 @@ class Counter:
 
     def __init__(self, counter: Union[str, os.PathLike[str], Mapping[str, Any]]) -> None:
         """counter: a file, or what is in it. Raises OSError, and ValueError for what isn't a counter."""
-        if not isinstance(counter, Mapping):
-            with open(counter, encoding="utf-8") as file:
-                counter = json.load(file)
+        name = "" if isinstance(counter, Mapping) else f"{os.fspath(counter)}: "
         try:
+            if not isinstance(counter, Mapping):
+                with open(counter, encoding="utf-8") as file:
+                    counter = json.load(file)
             self._models = _models(counter)
-        except (KeyError, TypeError, AttributeError) as fault:
-            raise ValueError(f"isn't a counter of pirsim calibrate: {fault!r}") from fault
+        except (ValueError, KeyError, TypeError, AttributeError) as fault:
+            raise ValueError(f"{name}isn't a counter of pirsim calibrate: {fault}") from fault
         self.step_s = float(counter["step_s"])
         self.n_counts, self._modes, n_sensors = counter["counts"], counter["modes"], counter["sensors"]
         self.sensors: tuple[str, ...] = tuple(counter.get("sensor_names") or
@@ -250,6 +251,9 @@ class Occupancy:
     """Somebody is there from a motion on, until P(nobody) reaches `off_at`: what `pirsim control --counter` weighs."""
 
     def __init__(self, off_at: float = 0.9) -> None:
+        """off_at: P(nobody), 0 to 1. Raises ValueError."""
+        if not 0.0 < off_at <= 1.0:
+            raise ValueError(f"off_at: expected a probability, up to 1, got {off_at:g}")
         self.off_at = off_at
         self.is_on: bool | None = None
         """None: not known yet."""

@@ -18,7 +18,8 @@ from .counter import ClockSteppedBack, Counter, Occupancy, State
 _log = logging.getLogger("pirsim_live")
 _KEYS = ("occupancy", "presence", "motion", "state")
 _ON = {"1", "on", "true", "yes", "motion", "detected", "occupied"}
-_OFF = {"0", "off", "false", "no", "clear", "no_motion", "none", "unoccupied"}
+_OFF = {"0", "off", "false", "no", "clear", "no_motion", "unoccupied"}
+_UNHEARD_S = 300.0  # after which a sensor is told that has said nothing; assumed (1-30 min)
 
 
 def state_of(payload: bytes, key: str | None = None) -> State:
@@ -66,11 +67,14 @@ class Bridge:
         told = [source.sensor for source in self._sources]
         if sorted(told) != sorted(counter.sensors):
             raise ValueError(f"the counter is for {', '.join(counter.sensors)}; topics are told of {', '.join(told) or 'none'}")
+        if len({(source.topic, source.key) for source in self._sources}) < len(self._sources):
+            raise ValueError("two sensors have one topic")
         self._counter, self._client, self._name, self._discovery = counter, client, name, discovery
         self._occupancy = Occupancy(off_at)
         self._clock, self._monotonic = clock, monotonic
         self._state_file, self._moments = state_file, (clock(), monotonic())
         self._connected = False
+        self._unheard, self._hears_since_s = set(told), monotonic()
         if state_file is not None and os.path.exists(state_file):
             try:
                 with open(state_file, encoding="utf-8") as file:
@@ -95,6 +99,7 @@ class Bridge:
             client.subscribe(topic, qos=1)
         client.publish(f"{self._discovery}/device/pirsim_{self._name}/config", json.dumps(self._device()), 1, True)
         client.publish(self._topic("status"), "online", 1, True)
+        _log.info("connected: %d sensors, told on %s", len(self._sources), self._topic("state"))
         self._tell()
 
     def _lose(self, _client: paho.Client, *_: Any) -> None:
@@ -113,6 +118,9 @@ class Bridge:
                 state = state_of(message.payload, source.key)
             except KeyError:
                 continue
+            if state is None and source.sensor in self._unheard:
+                _log.warning("%s: %s says %r, which is neither motion nor none", source.sensor, source.topic, message.payload[:60])
+            self._unheard.discard(source.sensor)
             self._update({source.sensor: state})
             if state and self._occupancy.is_on is not True:
                 self._occupancy.motion()
@@ -142,6 +150,9 @@ class Bridge:
         if ended:
             self._tell()
             self._save()
+            if self._connected and self._unheard and ticks > self._hears_since_s + _UNHEARD_S:
+                _log.warning("nothing was heard of %s: are the topics right?", ", ".join(sorted(self._unheard)))
+                self._unheard = set()
 
     def _save(self) -> None:
         if self._state_file is None:
@@ -211,4 +222,5 @@ class Bridge:
         if self._connected:
             self._client.publish(self._topic("status"), "offline", 1, True)
             self.turn(0.2)
+            self._connected = False  # not lost
         self._client.disconnect()
