@@ -3,6 +3,7 @@
 import json
 import pathlib
 import random
+import re
 import shutil
 import socket
 import subprocess
@@ -43,6 +44,15 @@ def test_faults_are_told_before_anything_is_connected(options, told, tmp_path):
     done = subprocess.run([sys.executable, "-m", "pirsim_live", "mqtt", "@options.txt", *sensors, *options], cwd=tmp_path,
                           capture_output=True, text=True, timeout=20)
     assert done.returncode == 2 and told in done.stderr, done.stderr
+
+
+def test_words_are_those_of_logs():
+    source = (pathlib.Path(__file__).parents[3] / "src/logs/log_head.cpp").read_text()
+    for array, state in (("on_words", True), ("off_words", False), ("unknown_words", None)):
+        words = re.findall('"([^"]*)"', re.search(array + "{(.*?)};", source, re.S).group(1))
+        assert len(words) > 5
+        for word in words:
+            assert state_of(word.encode()) is state, word
 
 
 def test_json_without_a_state_says_nothing_and_topics_are_told_apart():

@@ -17,8 +17,11 @@ from .counter import ClockSteppedBack, Counter, Occupancy, State
 
 _log = logging.getLogger("pirsim_live")
 _KEYS = ("occupancy", "presence", "motion", "state")
-_ON = {"1", "on", "true", "yes", "motion", "detected", "occupied"}
-_OFF = {"0", "off", "false", "no", "clear", "no_motion", "unoccupied"}
+# The words that logs are read by: src/logs/log_head.cpp.
+_ON = {"1", "on", "true", "yes", "motion", "motion detected", "motion_detected", "det", "detected", "active", "occupied",
+       "moving"}
+_OFF = {"0", "off", "false", "no", "clear", "no motion", "no_motion", "not detected", "inactive", "vacant", "not_detected",
+        "unoccupied", "idle"}
 _UNHEARD_S = 300.0  # after which a sensor is told that has said nothing; assumed (1-30 min)
 
 
