@@ -1,10 +1,13 @@
 #include "reconcile/report/sentences.hpp"
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/feature_map.hpp"
 #include "reconcile/report/pages.hpp"
 #include "support/catch.hpp"
 
@@ -354,6 +357,26 @@ TEST_CASE("an angle that may be any is told as not determined", "[reconcile]") {
   CHECK_THAT(in_words(fan), contains("heading not determined") && !contains("102"));
   fan.parameters.front().interval = {-60.0, 80.0};
   CHECK_THAT(in_words(fan), contains("heading 20 deg (90 % interval -60 to 80)"));
+}
+
+TEST_CASE("a sensor that is off takes its trials along, and a name what is lost together", "[reconcile]") {
+  const auto told = [](Verdict verdict, const std::vector<std::string>& beyond) {
+    Outcome outcome = outcome_of(verdict, {{"missed_triggers", 0.99}});
+    const auto add = [&](std::string_view statistic, const std::string& place) {
+      const bool is_off = std::ranges::find(beyond, place) != beyond.end();
+      outcome.location.envelope.push_back(
+          {{place, std::string(statistic), place}, is_off ? 2.0 : 0.0, 0.0, -1.0, 1.0, is_off ? 0.01 : 1.0});
+    };
+    for (const char* place : {"A", "B", "C"}) add(of_whole_sensor, place);
+    for (const char* place : {"S1", "S2", "S3"}) add(of_whole_trial, place);
+    add(name(TrialStatistic::joint_loss), "all");
+    const std::vector<std::string> texts = details(outcome);
+    return texts.empty() ? std::string() : texts.front();
+  };
+  CHECK(told(Verdict::one_of, {"S1", "all"}) == "S1 differs as a whole; sensors are lost together.");
+  CHECK(told(Verdict::one_of, {"B", "S1"}) == "B differs as a whole.");
+  CHECK(told(Verdict::one_of, {"A", "B", "S1"}) == "S1 differs as a whole.");  // most sensors: no matter of one
+  CHECK(told(Verdict::named, {"B", "all"}) == "B differs as a whole.");
 }
 
 TEST_CASE("the strongest deviation is told with its part of the trial, if it is more than scatter", "[reconcile]") {
