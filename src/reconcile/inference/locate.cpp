@@ -27,10 +27,9 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
   return cell;
 }
 
-/// Of those that are about as strong, the first: all sensors, one, a trial. What is unknown adds nothing.
+/// Of all sensors, of one, or of a trial. What is unknown adds nothing.
 Deviation strongest_deviation(const StudyFrame& frame, const stats::Matrix<float>& plain,
                               std::span<const float> measured, const std::vector<std::size_t>& trials) {
-  constexpr double about = 0.95;
   constexpr std::array parts{CellStatistic::lead_seconds, CellStatistic::seconds, CellStatistic::tail_seconds};
   Deviation strongest;
   const auto look = [&](const std::string& who, const auto& of_trials, const auto& of_sensors) {
@@ -57,7 +56,7 @@ Deviation strongest_deviation(const StudyFrame& frame, const stats::Matrix<float
       const double a_row = frame.window_s * std::sqrt(static_cast<double>(of_sensors.size()) / n_trials);
       const double variance = std::max(0.0, squares - one.expected_s * one.expected_s);
       one.scatters = (one.measured_s - one.expected_s) / std::sqrt(variance + a_row * a_row);
-      if (about * std::abs(one.scatters) > std::abs(strongest.scatters)) strongest = one;
+      if (std::abs(one.scatters) > std::abs(strongest.scatters)) strongest = one;
     }
   };
   const std::vector<std::size_t> sensors = stats::numbers_to(frame.sensors.size());
