@@ -114,8 +114,8 @@ struct Location {
   double p = 1.0;  ///< of the whole comparison
   std::vector<LocatedCell> cells;
   std::vector<EnvelopeFeature> envelope;
-  std::optional<Deviation> strongest;  ///< of all parts of trials
-  double band_s = 0.0;                 ///< half the width of the mean cell's 95 % band: what this experiment can't see
+  Deviation strongest;  ///< of all parts of trials
+  double band_s = 0.0;  ///< half the width of the mean cell's 95 % band: what this experiment can't see
   std::size_t n_simulated = 0;
   /// No data give a smaller p.
   [[nodiscard]] double least_p() const noexcept {
@@ -220,7 +220,6 @@ struct DataFinding {
     constant_column,   ///< sensors: one, 1 in all rows
     beats,             ///< sensors: one, 1 every `every_s`, whatever happens
     polled,            ///< no sensor changes but every `every_s`
-    one_at_a_time,     ///< no two sensors are 1 in one row
     repeated_rows,     ///< places: two, with the same rows
     all_silent,        ///< places: one, in which all sensors are silent
     silent_column      ///< sensors: one, without any 1
@@ -241,9 +240,9 @@ struct DataFinding {
   double chance = 0.0;        ///< that it comes about so: as of independent rows, so only small ones count
   bool is_impossible = true;  ///< sensors can't have said this; else it is odd
 };
-inline constexpr std::array<std::string_view, 9> data_finding_names{
-    "equal_columns", "opposite_columns", "constant_column", "beats",        "polled",
-    "one_at_a_time", "repeated_rows",    "all_silent",      "silent_column"};
+inline constexpr std::array<std::string_view, 8> data_finding_names{
+    "equal_columns", "opposite_columns", "constant_column", "beats",
+    "polled",        "repeated_rows",    "all_silent",      "silent_column"};
 [[nodiscard]] constexpr std::string_view name(DataFinding::What what) noexcept {
   return data_finding_names[static_cast<std::size_t>(what)];
 }

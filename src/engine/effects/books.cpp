@@ -218,8 +218,59 @@ Effect people_miscounted() {
           .alter = alter_people_miscounted};
 }
 
+// telegram_collisions: sensors share a channel, on which those that report in the same window disturb each other.
+
+enum class Survivor { none, one };
+
+class TelegramCollisions final : public CloneableRowStage<TelegramCollisions> {
+ public:
+  TelegramCollisions(double chance, Survivor survivor) : chance_(chance), survivor_(survivor) {}
+
+  void begin_run(std::uint64_t seed, std::uint32_t run) override {
+    stream_ = Stream({seed, run, 0, Purpose::telegram_collision});
+  }
+
+  void apply(Sample& row) noexcept override {
+    const auto n = static_cast<std::uint32_t>(std::ranges::count(row.bits, 1));
+    if (n < 2 || stream_.uniform() >= chance_) return;
+    const std::uint32_t survives = survivor_ == Survivor::one ? stream_.index(n) : n;
+    std::uint32_t i = 0;
+    for (std::uint8_t& bit : row.bits) {
+      if (bit == 1 && i++ != survives) bit = 0;
+    }
+  }
+
+ private:
+  double chance_;
+  Survivor survivor_;
+  Stream stream_{{}};
+};
+
+std::unique_ptr<RowStage> make_telegram_collisions(const EffectSpec& effect, const StageContext&) {
+  return std::make_unique<TelegramCollisions>(effect.parameters.at("probability"),
+                                              word(effect, "survivor") == "one" ? Survivor::one : Survivor::none);
+}
+
+Effect telegram_collisions() {
+  return {.info = {.name = "telegram_collisions",
+                   .family = Family::electronics,
+                   .stage = "books",
+                   .summary = "Sensors share a channel: of those that see motion in the same window, all telegrams are "
+                              "lost, or all but one at random, with one probability a window.",
+                   .fingerprint = "rows with motion at two sensors or more are rare, each sensor alone fits",
+                   .confused_with = {"missed_triggers", "dead_time"},
+                   .parameters = {told_as("probability of a collision",
+                                          strength("probability", "", 0.6, 0.2, 1.0, 1.0, "assumed"))},
+                   .choices = {{"survivor", ChoiceKind::variant, {"none", "one"}, "none"}},
+                   .reach = Reach::rows,
+                   .idle_in = {Survey::walk_test}},
+          .make_row_stage = make_telegram_collisions};
+}
+
 }  // namespace
 
-std::vector<Effect> books_effects() { return {dead_sensor(), labels_swapped(), people_miscounted()}; }
+std::vector<Effect> books_effects() {
+  return {dead_sensor(), labels_swapped(), people_miscounted(), telegram_collisions()};
+}
 
 }  // namespace pirsim::effects

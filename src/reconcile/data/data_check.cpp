@@ -490,47 +490,6 @@ void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<cons
       {.what = What::polled, .n_rows = data.n_rows(), .every_s = period * frame.window_s, .chance = std::exp(chance)});
 }
 
-/// Rows with any motion, and those of them in which one sensor alone has it.
-Edges alone_in_row(const DatasetRows& data) {
-  Edges edges;
-  for (const Series& run : data.runs) {
-    for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
-      const auto n = std::ranges::count(std::span(run.bits).subspan(row * data.n_sensors, data.n_sensors), 1);
-      edges.n += n > 0 ? 1 : 0;
-      edges.n_alike += n == 1 ? 1 : 0;
-    }
-  }
-  return edges;
-}
-
-/// Rows in which two sensors would have motion if they knew nothing of each other, a pair at a time.
-double expected_pairs(const DatasetRows& data) {
-  double expected = 0.0;
-  for (const Series& run : data.runs) {
-    double sum = 0.0, squares = 0.0;
-    for (std::size_t sensor = 0; sensor < data.n_sensors; ++sensor) {
-      const auto n = static_cast<double>(counts_of({std::span(&run, 1), data.n_sensors}, sensor).n_ones);
-      sum += n;
-      squares += n * n;
-    }
-    expected +=
-        (sum * sum - squares) / (2.0 * static_cast<double>(std::max<std::size_t>(1, run.n_rows(data.n_sensors))));
-  }
-  return expected;
-}
-
-/// As if one telegram a row came through. Sensors that see little of each other's field may do that too.
-void find_one_at_a_time(const DatasetRows& data, std::span<const DatasetRows> pilot,
-                        std::vector<DataFinding>& findings) {
-  const Edges edges = alone_in_row(data);
-  if (edges.n < fewest_edges || edges.n_alike < edges.n || pilot.empty()) return;
-  const double usual = greatest_of(pilot, [](const DatasetRows& d) { return alone_in_row(d).share(); });
-  const double chance = std::max(log_chance(edges, usual), -expected_pairs(data));
-  if (chance > log_level) return;
-  findings.push_back(
-      {.what = What::one_at_a_time, .n_rows = edges.n, .chance = std::exp(chance), .is_impossible = false});
-}
-
 DataFinding::Rows place(const StudyFrame& frame, const Series& run, std::size_t row, std::size_t n_rows) {
   return {frame.trials[run.trial], run.replicate, row + 1, row + n_rows};
 }
@@ -680,7 +639,6 @@ std::vector<DataFinding> check_data(const StudyFrame& frame, const Measured& mea
   find_constant(frame, data, sets, findings);
   find_beats(frame, data, sets, findings);
   find_polls(frame, data, sets, findings);
-  find_one_at_a_time(data, sets, findings);
   find_repeat(frame, data, sets, periodic, findings);
   find_silence(frame, data, sets, findings);
   find_silent(frame, data, sets, findings);

@@ -72,6 +72,14 @@ bool comes_nearest(const HypothesisScore& dropped, const Look& applied) {
   return applied.passes() && dropped.probability >= DecisionLevels().sure;
 }
 
+bool take_back_several(Outcome& outcome) {
+  if (outcome.verdict != Verdict::several || !outcome.verification || outcome.verification->explains()) return false;
+  outcome.verdict = Verdict::one_of;
+  outcome.fits.clear();
+  for (Candidate& candidate : outcome.candidates) candidate.named_together = false;
+  return true;
+}
+
 bool counts_in_doubt(std::span<const Candidate> candidates, double alpha) {
   return std::ranges::any_of(
       candidates, [&](const Candidate& c) { return c.score.p > alpha && is_about_counts(c.score.hypothesis); });

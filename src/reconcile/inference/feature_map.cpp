@@ -393,20 +393,22 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
   }
 }
 
-/// How far the cells of a sensor or of a trial are off, to whichever side: what was knocked, or went otherwise, loses
-/// in one place what it gains in another.
+/// How far the cells of a sensor or of a trial are off before, in and after the main part, to whichever side: what was
+/// knocked, or went otherwise, loses in one place what it gains in another.
 void FeatureMap::write_wholes(const Scaled& data, Writer& out) const {
   const auto write = [&](const auto& trials, const auto& sensors, const std::string& whose,
                          std::string_view statistic) {
     double size = 0.0, count = 0.0;
     for (const std::size_t trial : trials) {
       for (const std::size_t sensor : sensors) {
-        if (!known(trial, sensor, CellStatistic::seconds)) continue;
-        size += std::abs(data.cell(trial, sensor, CellStatistic::seconds));
-        count += 1.0;
+        for (const auto part : {CellStatistic::lead_seconds, CellStatistic::seconds, CellStatistic::tail_seconds}) {
+          if (!known(trial, sensor, part)) continue;
+          size += std::abs(data.cell(trial, sensor, part));
+          count += 1.0;
+        }
       }
     }
-    if (count < 2.0) return;  // of one cell its own number tells it
+    if (count < 2.0) return;  // of one number that tells it
     out.test_next();
     out.add(size / count, [&] { return FeatureName{whose + " as a whole", std::string(statistic), whose}; });
   };

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -29,62 +27,42 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
   return cell;
 }
 
-/// How far the seconds of these cells together are off; none where nothing is known of them.
-std::optional<Deviation> deviation_of(const StudyFrame& frame, const stats::Matrix<float>& plain,
-                                      std::span<const float> measured, Deviation::Part part, const std::string& who,
-                                      const std::function<bool(std::size_t trial, std::size_t sensor)>& is_of) {
-  constexpr std::array statistics{CellStatistic::lead_seconds, CellStatistic::seconds, CellStatistic::tail_seconds};
-  const CellStatistic statistic = statistics[static_cast<std::size_t>(part)];
-  std::vector<std::pair<std::size_t, std::size_t>> cells;
-  std::set<std::size_t> trials;
-  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
-    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
-      if (!is_of(trial, sensor) || std::isnan(DatasetStatistics(frame, measured).cell(trial, sensor, statistic)))
-        continue;
-      cells.emplace_back(trial, sensor);
-      trials.insert(trial);
-    }
-  }
-  if (cells.empty()) return std::nullopt;
-  const auto sum = [&](std::span<const float> dataset) {
-    double seconds = 0.0;
-    for (const auto& [trial, sensor] : cells) {
-      const float of_cell = DatasetStatistics(frame, dataset).cell(trial, sensor, statistic);
-      seconds += std::isnan(of_cell) ? 0.0 : static_cast<double>(of_cell);
-    }
-    return seconds / static_cast<double>(trials.size());
-  };
-  std::vector<double> simulated;
-  for (std::size_t row = 0; row < plain.rows(); ++row) simulated.push_back(sum(plain.row(row)));
-  Deviation deviation{who, part, sum(measured)};
-  const auto n = static_cast<double>(simulated.size());
-  double squares = 0.0;
-  for (const double seconds : simulated) deviation.expected_s += seconds / n;
-  for (const double seconds : simulated) squares += (seconds - deviation.expected_s) * (seconds - deviation.expected_s);
-  const double a_row =
-      frame.window_s * std::sqrt(static_cast<double>(cells.size())) / static_cast<double>(trials.size());
-  deviation.scatters = (deviation.measured_s - deviation.expected_s) / std::sqrt(squares / n + a_row * a_row);
-  return deviation;
-}
-
-/// Of those that are about as strong, the first: all sensors, one, a trial.
-std::optional<Deviation> strongest_deviation(const StudyFrame& frame, const stats::Matrix<float>& plain,
-                                             std::span<const float> measured, const std::vector<std::size_t>& trials) {
-  constexpr double about = 0.95;
-  std::optional<Deviation> strongest;
-  const auto look = [&](const std::string& who, const auto& is_of) {
-    for (const auto part : {Deviation::Part::before, Deviation::Part::main, Deviation::Part::after}) {
-      const auto one = deviation_of(frame, plain, measured, part, who, [&](std::size_t trial, std::size_t sensor) {
-        return std::ranges::find(trials, trial) != trials.end() && is_of(trial, sensor);
-      });
-      if (!one || (strongest && about * std::abs(one->scatters) <= std::abs(strongest->scatters))) continue;
-      strongest = one;
+/// Of all sensors, of one, or of a trial. What is unknown adds nothing.
+Deviation strongest_deviation(const StudyFrame& frame, const stats::Matrix<float>& plain,
+                              std::span<const float> measured, const std::vector<std::size_t>& trials) {
+  constexpr std::array parts{CellStatistic::lead_seconds, CellStatistic::seconds, CellStatistic::tail_seconds};
+  Deviation strongest;
+  const auto look = [&](const std::string& who, const auto& of_trials, const auto& of_sensors) {
+    const auto n_trials = static_cast<double>(of_trials.size());
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const auto mean_of = [&](std::span<const float> dataset) {
+        double seconds = 0.0;
+        for (const std::size_t trial : of_trials) {
+          for (const std::size_t sensor : of_sensors) {
+            const auto known = DatasetStatistics(frame, measured).cell(trial, sensor, parts[part]);
+            const auto own = DatasetStatistics(frame, dataset).cell(trial, sensor, parts[part]);
+            seconds += std::isnan(known) || std::isnan(own) ? 0.0 : static_cast<double>(own);
+          }
+        }
+        return seconds / n_trials;
+      };
+      Deviation one{who, static_cast<Deviation::Part>(part), mean_of(measured)};
+      double squares = 0.0;
+      for (std::size_t row = 0; row < plain.rows(); ++row) {
+        const double seconds = mean_of(plain.row(row));
+        one.expected_s += seconds / static_cast<double>(plain.rows());
+        squares += seconds * seconds / static_cast<double>(plain.rows());
+      }
+      const double a_row = frame.window_s * std::sqrt(static_cast<double>(of_sensors.size()) / n_trials);
+      const double variance = std::max(0.0, squares - one.expected_s * one.expected_s);
+      one.scatters = (one.measured_s - one.expected_s) / std::sqrt(variance + a_row * a_row);
+      if (std::abs(one.scatters) > std::abs(strongest.scatters)) strongest = one;
     }
   };
-  look("", [](auto, auto) { return true; });
-  for (std::size_t s = 0; s < frame.sensors.size(); ++s)
-    look(frame.sensors[s], [s](auto, std::size_t sensor) { return sensor == s; });
-  for (const std::size_t t : trials) look(frame.trials[t], [t](std::size_t trial, auto) { return trial == t; });
+  const std::vector<std::size_t> sensors = stats::numbers_to(frame.sensors.size());
+  look("", trials, sensors);
+  for (const std::size_t sensor : sensors) look(frame.sensors[sensor], trials, std::array{sensor});
+  for (const std::size_t trial : trials) look(frame.trials[trial], std::array{trial}, sensors);
   return strongest;
 }
 

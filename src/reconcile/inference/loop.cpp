@@ -474,15 +474,8 @@ class Loop {
          " before, " + p_in_words(v.after.p, v.after.least_p) + " after");
     if (!v.refused) tell("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
     outcome_.verification = std::move(v);
-    if (outcome_.verdict == Verdict::several && !outcome_.verification->explains()) take_back_several();
-  }
-
-  /// What explains nothing of held-out trials may be one of those that were applied, or something else.
-  void take_back_several() {
-    outcome_.verdict = Verdict::one_of;
-    outcome_.fits.clear();
-    for (Candidate& candidate : outcome_.candidates) candidate.named_together = false;
-    tell("several together are taken back: they explain too little of the held-out trials");
+    if (take_back_several(outcome_))
+      tell("several together are taken back: they explain too little of held-out trials");
   }
 
   [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const {

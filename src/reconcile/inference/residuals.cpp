@@ -22,7 +22,7 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr const char* all_sensors = "all sensors";
-constexpr double n_contrast_kinds = 3.0;  ///< session of all sensors, session of one, all at once
+constexpr double n_contrast_kinds = 2.0;  ///< session of all sensors, session of one
 constexpr std::size_t fewest_runs = 4;    ///< of three a step can't be told from a trend
 constexpr double fewest_awaited = 15.0;   ///< rows of a run (assumed): the share of fewer is chance
 constexpr double least_variance = 0.02;   ///< of a run's log odds (assumed): no model is known better
@@ -100,7 +100,7 @@ std::vector<double> ranks_of(const std::vector<double>& values) {
 /// What a contrast is called, of either side.
 struct ContrastWords {
   std::string who, when;
-  std::string more, less;  ///< less: empty if one side alone is looked at
+  std::string more, less;
 };
 
 /// A weighted sum of log odds over the runs, with weights that sum up to 0.
@@ -199,9 +199,7 @@ std::optional<ResidualDriver> strongest(std::span<const ContrastWords> words, co
     for (std::size_t i = 0; i < values.size(); ++i) sd[i] += (values[i] - mean[i]) * (values[i] - mean[i]) / n;
   }
   const auto z = [&](const std::vector<double>& values, std::size_t i) { return (values[i] - mean[i]) / sd[i]; };
-  const auto size = [&](const std::vector<double>& values, std::size_t i) {
-    return words[i].less.empty() ? z(values, i) : std::abs(z(values, i));
-  };
+  const auto size = [&](const std::vector<double>& values, std::size_t i) { return std::abs(z(values, i)); };
   const auto best_of = [&](const std::vector<double>& values) {
     std::size_t best = 0;
     for (std::size_t i = 1; i < values.size(); ++i) best = size(values, i) > size(values, best) ? i : best;
@@ -216,7 +214,7 @@ std::optional<ResidualDriver> strongest(std::span<const ContrastWords> words, co
   const auto& [who, when, more, less] = words[best];
   return ResidualDriver{who,
                         when,
-                        less.empty() || z(measured, best) > 0.0 ? more : less,
+                        z(measured, best) > 0.0 ? more : less,
                         measured[best] - mean[best],
                         sd[best],
                         z(measured, best),
@@ -709,13 +707,12 @@ std::size_t strongest(const Usual& usual, const Scores& scores, const std::vecto
 ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std::span<const Series> runs) {
   const std::size_t n = frame.sensors.size();
   ContrastData data;
-  std::vector<Series> seen;
   for (const DataShape::Run& wanted : shape.runs) {
     std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n);
     data.shortest.push_back(0.0);
     const Series* run = run_of(runs, wanted);
     if (run == nullptr) continue;
-    Series& main = seen.emplace_back(*run);
+    Series main = *run;
     main.main_end = std::min(main.main_end, main.main_begin + wanted.n_main);
     const std::size_t first = main.main_begin * n;
     for (std::size_t i = 0; i < std::min(wanted.unknown.size(), main.main_end * n - first); ++i) {
@@ -729,7 +726,6 @@ ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std:
       gaps[1 + s] = own[s];
     }
   }
-  data.joint_silence = joint_silence(seen, n).log_ratio();
   return data;
 }
 
@@ -762,9 +758,6 @@ std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const Dat
       return values;
     });
   }
-  // Gaps at the same moments less often than by chance have no known cause.
-  const ContrastWords together{all_sensors, "", "silent at the same moments oftener than by chance", ""};
-  look(std::span(&together, 1), [](const ContrastData& data) { return std::vector<double>{data.joint_silence}; });
   std::ranges::stable_sort(telling, std::ranges::greater{}, [](const ResidualDriver& d) { return std::abs(d.z); });
   return telling;
 }

@@ -1,5 +1,5 @@
-// Few contrasts that see what many drivers of single bits don't: what changes in the course of the session, and what
-// strikes all sensors at once. Private to reconcile.
+// Few contrasts that see what many drivers of single bits don't: what changes in the course of the session. Private to
+// reconcile.
 #pragma once
 
 #include <span>
@@ -15,14 +15,13 @@ namespace pirsim::reconcile {
 struct ContrastData {
   std::vector<std::vector<Gaps>> gaps;  ///< (n_runs x (1 + n_sensors)) of all sensors, of each
   std::vector<double> shortest;         ///< (n_runs) rows of the shortest stretch of motion that isn't cut off; 0: none
-  double joint_silence = 0.0;           ///< JointSilence::log_ratio()
 };
 /// runs: of a dataset; made blind where the shape is.
 [[nodiscard]] ContrastData contrast_data(const StudyFrame& frame, const DataShape& shape, std::span<const Series> runs);
 
 /// Contrasts of measured data that datasets of the model hardly ever have, strongest first. p: that the strongest
-/// contrast of its kind (session of all sensors, session of one, all at once) is so strong in such a dataset, times
-/// three; at most alpha. The session has the order of the script, one repetition after the other; it needs four runs.
+/// contrast of its kind (session of all sensors, session of one) is so strong in such a dataset, times two; at most
+/// alpha. The session has the order of the script, one repetition after the other; it needs four runs.
 [[nodiscard]] std::vector<ResidualDriver> telling_contrasts(const StudyFrame& frame, const DataShape& shape,
                                                             const ContrastData& measured,
                                                             const std::vector<ContrastData>& simulated, double alpha);
@@ -41,8 +40,8 @@ struct ReferenceStudy;
                                           const Context& context);
 
 /// What the model with these effects leaves over and hardly any effect makes: what changes in the course of the
-/// session, from a trial on or from trial to trial, of all sensors or one; and whether all sensors are silent at the
-/// same moments, oftener than in datasets of that model. plain: the study without the effects. measured: series only.
+/// session, from a trial on or from trial to trial, of all sensors or one. plain: the study without the effects.
+/// measured: series only.
 /// Throws Error(infeasible) if people can hardly get about with the effects.
 [[nodiscard]] Residuals explain_rest(const ReferenceStudy& plain, std::span<const FittedEffect> applied,
                                      const Measured& measured, double alpha, const Context& context);

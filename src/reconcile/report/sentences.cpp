@@ -78,8 +78,6 @@ std::string_view advice(What what) {
       return "see whether the logger writes its sign of life or its polling as motion";
     case What::polled:
       return "see how often the logger asks: if only so often, set window_s to that and resample the rows";
-    case What::one_at_a_time:
-      return "see whether the radio or the gateway passes one telegram at a time";
     case What::repeated_rows:
       return "see whether files were joined or saved under a wrong name; take one of the two places out";
     case What::all_silent:
@@ -92,9 +90,12 @@ std::string_view advice(What what) {
 
 using Names = std::vector<std::string>;
 
+/// What was applied explains too little of the trials set aside: what is missing may well be none of it.
+bool is_unsupported(const Outcome& outcome) { return outcome.verification && !outcome.verification->explains(); }
+
 /// Which kind of effect it is, if that is clear though its name isn't.
 std::string kind_of(const Outcome& outcome) {
-  if (!outcome.family.is_sure() || (outcome.verification && !outcome.verification->explains())) return {};
+  if (!outcome.family.is_sure() || is_unsupported(outcome)) return {};
   return " The cause belongs to the family " + std::string(name(outcome.family.family)) + " with probability " +
          short_number(outcome.family.probability) + ".";
 }
@@ -102,8 +103,8 @@ std::string kind_of(const Outcome& outcome) {
 /// Which part of the trials is off most, and by how much.
 std::string most_of_all(const Location& location) {
   constexpr double worth_telling = 3.0, whole_s = 1.0;  // scatters; what is expected is hardly anything below a second
-  if (!location.strongest || std::abs(location.strongest->scatters) < worth_telling) return {};
-  const auto& [who, part, measured_s, expected_s, scatters] = *location.strongest;
+  const auto& [who, part, measured_s, expected_s, scatters] = location.strongest;
+  if (std::abs(scatters) < worth_telling) return {};
   const std::string there = part == Deviation::Part::before  ? "before the main part"
                             : part == Deviation::Part::after ? "after the main part"
                                                              : "in the main part";
@@ -113,29 +114,31 @@ std::string most_of_all(const Location& location) {
          fixed(expected_s, 1) + " s expected).";
 }
 
-/// What the numbers of sensors together, and of one sensor or trial as a whole, say by themselves.
+/// What the numbers of one sensor or trial as a whole, and of sensors together, say by themselves. A sensor that is off
+/// takes its trials along; clocks and dead times that are named explain what is lost together.
 std::string told_of_shared(const Outcome& outcome) {
-  const auto is_beyond = [&](const EnvelopeFeature& feature) { return feature.adjusted_p <= outcome.alpha; };
-  Names told;
-  for (const std::string_view statistic : {of_whole_sensor, of_whole_trial}) {
-    Names off;
+  const auto places_beyond = [&](std::string_view statistic) {
+    Names places;
     std::size_t n = 0;
     for (const EnvelopeFeature& feature : outcome.location.envelope) {
       if (feature.name.statistic != statistic) continue;
       ++n;
-      if (is_beyond(feature) && feature.observed > feature.median) off.push_back(feature.name.place);
+      if (feature.adjusted_p <= outcome.alpha && feature.observed > feature.median)
+        places.push_back(feature.name.place);
     }
-    if (off.empty() || 2 * off.size() > n) continue;  // most of them: it is no matter of one
-    told.push_back(enumerated(off, "and") + (off.size() == 1 ? " differs" : " differ") + " as a whole");
+    return n > 1 && 2 * places.size() > n ? Names() : places;  // most of them: it is no matter of one
+  };
+  Names told;
+  for (const std::string_view statistic : {of_whole_sensor, of_whole_trial}) {
+    const Names off = told.empty() ? places_beyond(statistic) : Names();
+    if (!off.empty())
+      told.push_back(enumerated(off, "and") + (off.size() == 1 ? " differs" : " differ") + " as a whole");
   }
-  for (const EnvelopeFeature& feature : outcome.location.envelope) {
-    if (!is_beyond(feature)) continue;
-    const bool more = feature.observed > feature.median;
-    if (feature.name.statistic == name(TrialStatistic::joint_loss))
-      told.emplace_back(more ? "sensors are lost together" : "where two sensors should report, one of them is lost");
-    if (feature.name.statistic == name(TrialStatistic::loss_in_company) && more)
-      told.emplace_back("sensors are lost where others report, and hardly alone");
-  }
+  const bool is_named = outcome.verdict == Verdict::named || outcome.verdict == Verdict::several;
+  if (!is_named && !places_beyond(name(TrialStatistic::joint_loss)).empty())
+    told.emplace_back("sensors are lost together");
+  if (!is_named && !places_beyond(name(TrialStatistic::loss_in_company)).empty())
+    told.emplace_back("sensors are lost where others report, and hardly alone");
   if (told.empty()) return {};
   std::string text = joined(told, "; ") + ".";
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
@@ -240,17 +243,6 @@ std::string counts_first(const Outcome& outcome) {
   return "Check the people counts first: while they may be wrong, what else is missing can't be told. ";
 }
 
-/// What was applied helps on no trial set aside, and the folds don't agree on an effect of the verdict's: what is
-/// missing may well be none of them.
-bool is_unsupported(const Outcome& outcome) {
-  if (!outcome.verification || outcome.verification->shrunk) return false;
-  const std::vector<std::string>& found = outcome.verification->names;
-  const auto of_the_set = std::ranges::count_if(
-      found, [&](const std::string& name) { return std::ranges::find(outcome.named, name) != outcome.named.end(); });
-  const auto as_first = std::ranges::count(found, found.empty() ? std::string() : found.front());
-  return 2 * of_the_set <= std::ssize(found) || 2 * as_first <= std::ssize(found);
-}
-
 std::string sentence_of_set(const Outcome& outcome) {
   const std::string places = where(outcome);
   if (outcome.named.empty()) return "Measurement and simulation differ, but by too little to name a cause." + places;
@@ -265,8 +257,7 @@ std::string sentence_of_set(const Outcome& outcome) {
   if (is_unsupported(outcome))
     return first + "shows something that the simulation doesn't include, quite possibly " + something_else(outcome) +
            "." + places + " " + enumerated(causes, "and") + " can't be ruled out, but " +
-           "on trials not used for fitting no improvement by " + (one ? "it" : "the likeliest of them") +
-           " could be demonstrated.";
+           (one ? "it" : "the likeliest of them") + " explains hardly anything of trials not used for fitting.";
   if (one)
     return first + "shows something that the simulation doesn't include. It may be " + causes.front() +
            ", but the data don't tell whether that effect is there at all. Or it is " + something_else(outcome) + "." +
@@ -544,8 +535,6 @@ std::string in_words(const DataFinding& finding) {
       return sensor + " is 1 " + every + ", whatever happens";
     case What::polled:
       return "no sensor changes but " + every;
-    case What::one_at_a_time:
-      return "no two sensors are 1 in the same row, in " + grouped(finding.n_rows) + " rows with motion";
     case What::repeated_rows:
       return place(finding.places.front()) + " stand again as " + place(finding.places.back());
     case What::all_silent:
@@ -635,8 +624,7 @@ std::string sentence(const Outcome& outcome) {
     case Verdict::one_of:
       return sentence_of_set(outcome);
     case Verdict::several:
-      return "The measurement shows " + enumerated(outcome.named, "and") + " together." +
-             (is_unsupported(outcome) ? " Or it shows " + something_else(outcome) + "." : "") + where(outcome);
+      return "The measurement shows " + enumerated(outcome.named, "and") + " together." + where(outcome);
     case Verdict::nearest:
       return sentence_of_nearest(outcome);
     case Verdict::faulty_data:

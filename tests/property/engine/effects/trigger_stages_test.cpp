@@ -210,6 +210,30 @@ TEST_CASE("pulses of random length spread evenly round their mean") {
   CHECK(std::abs(variance - uniform) < 0.1 * uniform);
 }
 
+TEST_CASE("telegrams collide in as many windows as their probability says, and a sensor alone gets through") {
+  const double n = 20'000, chance = 0.3, standard_error = std::sqrt(chance * (1.0 - chance) * n);
+  for (const std::string survivor : {"none", "one"}) {
+    effects::Pipeline pipeline =
+        Bench().pipeline({effect("telegram_collisions", {{"probability", chance}}, {{"survivor", survivor}})});
+    double both = 0, first = 0, second = 0;
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+      Sample together, alone;
+      together.bits = {1, 1};
+      alone.bits = {0, 1};
+      pipeline.apply(together);
+      pipeline.apply(alone);
+      REQUIRE(alone.bits == std::vector<std::uint8_t>{0, 1});
+      both += together.bits[0] * together.bits[1];
+      first += together.bits[0] * (1 - together.bits[1]);
+      second += together.bits[1] * (1 - together.bits[0]);
+    }
+    CHECK(std::abs(both - (1.0 - chance) * n) < 4.0 * standard_error);
+    CHECK_FALSE(std::abs(both - (0.95 - chance) * n) < 4.0 * standard_error);  // must fail
+    CHECK(first + second == (survivor == "one" ? n - both : 0.0));
+    CHECK(std::abs(first - second) < 4.0 * std::sqrt(chance * n));
+  }
+}
+
 TEST_CASE("a late clock stamps every trigger later by its lag and its drift") {
   const Series before = with_ones(5000, {1, 2, 50, 1000, 1001, 3000, 4999});
   const auto lag = through(Bench().pipeline({effect("clock_lag", {{"lag_s", 1.0}, {"drift_percent", 0.0}})}), before);

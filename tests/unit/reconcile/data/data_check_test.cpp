@@ -178,20 +178,6 @@ TEST_CASE("a logger that asks every 2.3 s is told, and sensors that hold for thr
   CHECK(told(check(std::move(held), pilot())) == 0.0);
 }
 
-TEST_CASE("a gateway that passes one telegram a row is odd, unless the model's sensors never meet either",
-          "[data_check]") {
-  const Change one = each_row([](Series& run, std::size_t row) {
-    const auto bits = std::span(run.bits).subspan(row * n_sensors, n_sensors);
-    const auto first = std::ranges::find(bits, 1);
-    if (first != bits.end()) std::fill(first + 1, bits.end(), std::uint8_t{0});
-  });
-  const auto findings = check(one);
-  REQUIRE(findings.size() == 1);
-  CHECK(findings.front().what == What::one_at_a_time);
-  CHECK_FALSE(any_impossible(findings));
-  CHECK(check(one, one).empty());
-}
-
 TEST_CASE("rows that stand twice are told with both places", "[data_check]") {
   const Change pasted = [](std::vector<Series>& runs) {
     for (std::size_t row = 0; row < 50; ++row) {

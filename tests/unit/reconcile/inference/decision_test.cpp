@@ -57,6 +57,29 @@ TEST_CASE("several surviving effects are one of them, the one that fits best fir
   CHECK(decide(0.001, scores(0.0, 0.1, 0.4, 0.2), {0.05}) == Decision{Verdict::one_of, {2, 3, 1}});
 }
 
+TEST_CASE("several effects that explain little of held-out trials become one of them", "[reconcile]") {
+  const auto judged = [](Verdict verdict, std::optional<double> share_closed) {
+    Outcome outcome;
+    outcome.verdict = verdict;
+    outcome.named = {"cat", "fan"};
+    outcome.fits.resize(2);
+    outcome.candidates.resize(1);
+    outcome.candidates.front().named_together = true;
+    if (share_closed) outcome.verification.emplace().share_closed = *share_closed;
+    const bool taken_back = take_back_several(outcome);
+    CHECK(taken_back == (outcome.verdict != verdict));
+    CHECK(outcome.named.size() == 2);
+    CHECK(outcome.fits.empty() == taken_back);
+    CHECK(outcome.candidates.front().named_together != taken_back);
+    return outcome.verdict;
+  };
+  CHECK(judged(Verdict::several, 0.15) == Verdict::one_of);
+  CHECK(judged(Verdict::several, -0.5) == Verdict::one_of);
+  CHECK(judged(Verdict::several, 0.16) == Verdict::several);
+  CHECK(judged(Verdict::several, std::nullopt) == Verdict::several);  // nothing could be held out
+  CHECK(judged(Verdict::named, 0.1) == Verdict::named);
+}
+
 TEST_CASE("an effect that is as good as certain is ruled out at two fifths of the level only", "[reconcile]") {
   std::vector<HypothesisScore> certain = scores(0.0, 0.0, 0.03, 0.0);
   CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);

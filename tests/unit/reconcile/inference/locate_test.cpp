@@ -57,7 +57,7 @@ TEST_CASE("the strongest deviation is told of the part of the trial and of those
   for (int i = 0; i < 99; ++i) plain.append_row(std::span<const float>(drawn(3, 1.0F)));
   const FeatureMap map(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, {0, 1, 2});
   const auto strongest = [&](std::size_t fewer_of, float lead_share) {
-    return *locate(frame, map, plain, drawn(fewer_of, lead_share), 0.05, {}).strongest;
+    return locate(frame, map, plain, drawn(fewer_of, lead_share), 0.05, {}).strongest;
   };
   const Deviation all = strongest(3, 0.2F), one = strongest(1, 0.2F);
   CHECK((all.who.empty() && all.part == Deviation::Part::before && all.scatters < -3.0));

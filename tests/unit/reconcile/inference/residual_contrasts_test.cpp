@@ -2,6 +2,7 @@
 #include "reconcile/inference/residuals.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "pirsim/random.hpp"
@@ -29,7 +30,7 @@ DataShape shape_with(int n_replicates) {
 using Chance = std::function<double(std::size_t place, std::size_t sensor)>;
 double usual(std::size_t, std::size_t) { return 0.3; }
 
-ContrastData drawn(const DataShape& shape, std::uint32_t number, const Chance& chance, double joint_silence = 0.0) {
+ContrastData drawn(const DataShape& shape, std::uint32_t number, const Chance& chance) {
   Stream stream({1, number, 0, Purpose::test});
   ContrastData data;
   for (const DataShape::Run& run : shape.runs) {
@@ -43,7 +44,6 @@ ContrastData drawn(const DataShape& shape, std::uint32_t number, const Chance& c
       gaps[0].silent += own.silent;
     }
   }
-  data.joint_silence = joint_silence + 0.2 * stream.normal();
   for (std::size_t run = 0; run < shape.runs.size(); ++run) data.shortest.push_back(1.0 + stream.index(3));
   return data;
 }
@@ -121,22 +121,15 @@ TEST_CASE("the shortest stretch is of those that no end of the main part cuts of
   CHECK(shortest({1, 0, 1, 1, unknown_bit, 0, 0, 1}) == 0.0);
 }
 
-TEST_CASE("silence at the same moments is told if it is oftener, not if it is less often", "[reconcile]") {
-  const DataShape shape = shape_with(1);
-  const auto more = told(shape, drawn(shape, 6, usual, 1.2));
-  REQUIRE(more.size() == 1);
-  CHECK_THAT(more.front().what, contains("silent at the same moments"));
-  CHECK(told(shape, drawn(shape, 6, usual, -1.2)).empty());
-}
-
 TEST_CASE("contrasts are told of one session in twenty in which nothing changes", "[reconcile]") {
   const DataShape shape = shape_with(1);
   std::vector<ContrastData> simulated;
-  for (std::uint32_t i = 0; i < 180; ++i) simulated.push_back(drawn(shape, 100 + i, usual));
+  for (std::uint32_t i = 0; i < 720; ++i) simulated.push_back(drawn(shape, 10000 + i, usual));
   int with_any = 0;
-  constexpr int n = 200;  // standard error of the share 0.0154; more than one of three kinds may be told
+  constexpr int n =
+      200;  // standard error of the share 0.0154, of what 720 datasets let pass 0.0082; both kinds may be told
   for (std::uint32_t i = 0; i < n; ++i)
     with_any += telling_contrasts(frame, shape, drawn(shape, 1000 + i, usual), simulated, 0.05).empty() ? 0 : 1;
-  CHECK(with_any <= 0.05 * n + 3 * 0.0154 * n);
+  CHECK(with_any <= 0.05 * n + 3 * std::hypot(0.0154, 0.0082) * n);
   CHECK(with_any > 0);
 }

@@ -1,10 +1,13 @@
 #include "reconcile/report/sentences.hpp"
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/feature_map.hpp"
 #include "reconcile/report/pages.hpp"
 #include "support/catch.hpp"
 
@@ -219,18 +222,9 @@ TEST_CASE("a set of effects leaves a door open and shows its first three", "[rec
   CHECK_THAT(sentence(outcome),
              contains("the data can't tell which: seat_scatter, warm_chair, missing_occluder, 2 other effects or "
                       "something that isn't in the catalogue."));
-  for (const Verdict verdict : {Verdict::one_of, Verdict::several}) {
-    outcome.verdict = verdict;
-    outcome.verification.emplace();
-    outcome.verification->names = {"dead_time", "nothing", "clock_lag", "seat_shift"};
-    CHECK_THAT(sentence(outcome), contains("something that isn't in the catalogue."));
-  }
-  outcome.verdict = Verdict::one_of;
+  outcome.verification.emplace().share_closed = 0.15;
   CHECK_THAT(sentence(outcome), contains("quite possibly something that isn't in the catalogue."));
-  outcome.verification->names = {"warm_chair", "warm_chair", "warm_chair", "dead_time"};
-  CHECK_THAT(sentence(outcome), !contains("quite possibly"));
-  outcome.verification->names.front() = "nothing";
-  outcome.verification->shrunk = true;
+  outcome.verification->share_closed = 0.16;
   CHECK_THAT(sentence(outcome), !contains("quite possibly"));
 }
 
@@ -295,8 +289,7 @@ TEST_CASE("of several causes those of the data are mended in the data", "[reconc
 TEST_CASE("what may be none of a set is looked for in data and model first", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK_THAT(next_step(outcome), contains("What to do next: measure more before one of them is applied."));
-  outcome.verification.emplace();
-  outcome.verification->names = {"dead_time", "seat_scatter"};
+  outcome.verification.emplace().share_closed = 0.1;
   CHECK_THAT(next_step(outcome), contains("look at the data first, then at the model of the room"));
 }
 
@@ -366,13 +359,33 @@ TEST_CASE("an angle that may be any is told as not determined", "[reconcile]") {
   CHECK_THAT(in_words(fan), contains("heading 20 deg (90 % interval -60 to 80)"));
 }
 
+TEST_CASE("a sensor that is off takes its trials along, and a name what is lost together", "[reconcile]") {
+  const auto told = [](Verdict verdict, const std::vector<std::string>& beyond) {
+    Outcome outcome = outcome_of(verdict, {{"missed_triggers", 0.99}});
+    const auto add = [&](std::string_view statistic, const std::string& place) {
+      const bool is_off = std::ranges::find(beyond, place) != beyond.end();
+      outcome.location.envelope.push_back(
+          {{place, std::string(statistic), place}, is_off ? 2.0 : 0.0, 0.0, -1.0, 1.0, is_off ? 0.01 : 1.0});
+    };
+    for (const char* place : {"A", "B", "C"}) add(of_whole_sensor, place);
+    for (const char* place : {"S1", "S2", "S3"}) add(of_whole_trial, place);
+    add(name(TrialStatistic::joint_loss), "all");
+    const std::vector<std::string> texts = details(outcome);
+    return texts.empty() ? std::string() : texts.front();
+  };
+  CHECK(told(Verdict::one_of, {"S1", "all"}) == "S1 differs as a whole; sensors are lost together.");
+  CHECK(told(Verdict::one_of, {"B", "S1"}) == "B differs as a whole.");
+  CHECK(told(Verdict::one_of, {"A", "B", "S1"}) == "S1 differs as a whole.");  // most sensors: no matter of one
+  CHECK(told(Verdict::named, {"B", "all"}) == "B differs as a whole.");
+}
+
 TEST_CASE("the strongest deviation is told with its part of the trial, if it is more than scatter", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {});
   outcome.location.cells.resize(3);
   outcome.location.strongest = Deviation{"", Deviation::Part::before, 6.0, 30.0, -9.0};
   CHECK_THAT(sentence(outcome), contains("Strongest before the main part: all sensors 80 % less (6.0 s with motion a "
                                          "trial, 30.0 s expected)."));
-  outcome.location.strongest->scatters = -2.0;
+  outcome.location.strongest.scatters = -2.0;
   CHECK_THAT(sentence(outcome), !contains("Strongest"));
 }
 
