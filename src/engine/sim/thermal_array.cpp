@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "engine/sim/run_state.hpp"
 #include "model/schema/limits.hpp"
@@ -18,6 +19,23 @@ namespace {
 constexpr double ray_weight = 1e-6;
 constexpr double sigma_of_width = 0.42466090014400953;     // 1 / (2 sqrt(2 ln 2)): full width at half of a Gaussian
 constexpr double margin_sigmas = 2.0, reach_sigmas = 4.0;  // of the lattice beyond the pixels; of a pixel's response
+
+/// Both normal numbers of each pair that Box and Muller make.
+class Normals {
+ public:
+  explicit Normals(StreamKey key) : stream_(key) {}
+  double next() {
+    if (std::exchange(has_other_, !has_other_)) return other_;
+    const double length = std::sqrt(-2.0 * std::log(1.0 - stream_.uniform())), angle = 2.0 * pi * stream_.uniform();
+    other_ = length * std::sin(angle);
+    return length * std::cos(angle);
+  }
+
+ private:
+  Stream stream_;
+  bool has_other_ = false;
+  double other_ = 0.0;
+};
 
 double rate_of(const ArraySpec& spec, const SensingSpec& sensing) {
   return sensing.frame_rate_hz.value_or(spec.rate_hz);
@@ -134,6 +152,7 @@ ThermalArray::ThermalArray(const SceneSpec& scene, std::size_t index, const Sens
     for (std::uint32_t i = shares_begin_[ray]; i < shares_begin_[ray + 1]; ++i)
       backgrounds_[shares_[i].pixel] += shares_[i].of_pixel * power_.background(ray);
   }
+  for (const double radiance : backgrounds_) empty_c_.push_back(thermometer_.celsius(radiance));
   const double corner = glm::length(centre_of(spec_, field, 0, 0));
   for (int row = 0; row < spec_.rows; ++row) {
     for (int column = 0; column < spec_.columns; ++column) {
@@ -177,20 +196,23 @@ void ThermalArray::see(std::span<const PowerSteps> powers, std::span<double> cel
     for (std::uint32_t i = shares_begin_[ray]; i < shares_begin_[ray + 1]; ++i)
       celsius[shares_[i].pixel] += shares_[i].of_pixel * radiance;
   }
-  for (double& value : celsius) value = thermometer_.celsius(value);
+  for (std::size_t pixel = 0; pixel < celsius.size(); ++pixel) {
+    double& value = celsius[pixel];
+    value = value == backgrounds_[pixel] ? empty_c_[pixel] : thermometer_.celsius(value);
+  }
 }
 
 void ThermalArray::read(std::span<const double> celsius, std::uint32_t run, std::int64_t frame, Pages pages,
                         std::span<float> values) const noexcept {
   constexpr std::uint32_t most_arrays = 256;  // numbers repeat after 2^24 frames
-  Stream stream({seed_, run, index_ + most_arrays * static_cast<std::uint32_t>(frame), Purpose::array_frame});
-  const double common_k = spec_.common_k * std::sqrt(rate_hz_) * stream.normal();
+  Normals stream({seed_, run, index_ + most_arrays * static_cast<std::uint32_t>(frame), Purpose::array_frame});
+  const double common_k = spec_.common_k * std::sqrt(rate_hz_) * stream.next();
   const auto n_columns = static_cast<std::size_t>(spec_.columns);
   for (std::size_t pixel = 0; pixel < n_pixels(); ++pixel) {
     // Sub-pages as the squares of a chess board.
     const auto page = static_cast<std::int64_t>(pixel / n_columns + pixel % n_columns);
     if (pages == Pages::due && spec_.sub_pages == 2 && (page + frame) % 2 != 0) continue;
-    double value = celsius[pixel] + pattern_k_[pixel] + common_k + noise_k_[pixel] * stream.normal();
+    double value = celsius[pixel] + pattern_k_[pixel] + common_k + noise_k_[pixel] * stream.next();
     if (spec_.step_k > 0.0) value = std::round(value / spec_.step_k) * spec_.step_k;
     values[pixel] = static_cast<float>(value);
   }
@@ -223,6 +245,7 @@ Camera::Camera(const ThermalArray& array, TracerKind kind, std::uint32_t run)
       run_(run),
       meter_(array.power(), array.make_tracer(kind), 0),
       powers_(array.power().n_receivers()),
+      seen_(powers_),
       celsius_(array.n_pixels()),
       last_(array.n_pixels()),
       frames_{array.spec().rows, array.spec().columns, {}, {}} {}
@@ -236,7 +259,10 @@ void Camera::look(const RunState& state) {
     return;
   }
   meter_.measure(state.crowd.actors(), state.crowd.doors().steps(), powers_);
-  array_.see(powers_, celsius_);
+  if (begins || powers_ != seen_) {
+    array_.see(powers_, celsius_);
+    seen_ = powers_;
+  }
   if (begins) array_.read(celsius_, run_, next_ - 1, ThermalArray::Pages::all, last_);
   for (; array_.tick_of(next_) <= state.tick; ++next_) {
     array_.read(celsius_, run_, next_, ThermalArray::Pages::due, last_);

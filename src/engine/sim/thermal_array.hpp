@@ -66,6 +66,7 @@ class ThermalArray {
   std::optional<rt::LeafCuts> cuts_;
   pir::Thermometer thermometer_;
   std::vector<double> backgrounds_;  ///< (n_pixels) radiance of the empty room, W m^-2 sr^-1
+  std::vector<double> empty_c_;      ///< (n_pixels) the same as temperatures
   std::vector<double> noise_k_;      ///< (n_pixels)
   std::vector<double> pattern_k_;    ///< (n_pixels) what this unit always adds; NaN: dead
 };
@@ -85,8 +86,8 @@ class Camera {
   const ThermalArray& array_;
   std::uint32_t run_;
   PowerMeter meter_;
-  std::int64_t next_ = 0;  ///< frame; 0: none was looked for yet
-  std::vector<PowerSteps> powers_;
+  std::int64_t next_ = 0;                  ///< frame; 0: none was looked for yet
+  std::vector<PowerSteps> powers_, seen_;  ///< now, and when celsius_ was worked out
   std::vector<double> celsius_;
   std::vector<float> last_;
   FrameStack frames_;
