@@ -99,6 +99,7 @@ struct RecipeSpec {
   std::vector<VariedEffectSpec> effects;
   SplitSpec split;
   Occupants occupants = Occupants::counted;
+  Frames frames = Frames::none;
   std::vector<Export> exports;
   std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
   int pictures = 6;                ///< of so many rooms, the first ones

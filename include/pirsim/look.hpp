@@ -75,7 +75,7 @@ struct FilmRequest {
 /// Error(io).
 double export_run(const std::filesystem::path& file, const Model& model, const FilmRequest& request = {});
 
-/// What a sensor sees of a person who stands or sits still.
+/// What a sensor sees of a person who stands or sits still; an array in one frame, three times above its noise.
 struct SensorSight {
   std::string sensor;
   std::size_t rays = 0;
@@ -87,6 +87,7 @@ struct SensorSight {
   std::size_t area_places = 0;     ///< of that area
   std::size_t area_seen = 0;       ///< of these, where a zone sees a standing person
   std::vector<std::string> seats;  ///< seats where a zone sees a sitter at rest
+  std::string about{};             ///< of an array: pixels, noise and contrasts, in words
   [[nodiscard]] bool sees_nothing() const noexcept { return places == 0 && seats.empty(); }
 };
 
@@ -94,7 +95,7 @@ struct SightReport {
   double spacing_m = 0.25;  ///< of the places tried
   std::size_t places = 0;   ///< walkable places of the floor area
   std::size_t places_seen_by_any = 0;
-  std::vector<SensorSight> sensors;  ///< in the scene's order
+  std::vector<SensorSight> sensors;  ///< in the scene's order, then its arrays
 };
 
 /// What one sensor makes of somebody who works in a seat.

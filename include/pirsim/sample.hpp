@@ -50,6 +50,13 @@ struct TraceRow {
   bool operator==(const TraceRow&) const = default;
 };
 
+/// All frames of one thermopile array in one run.
+struct FrameStack {
+  int rows = 0, columns = 0;
+  std::vector<double> times_s;  ///< (n_frames)
+  std::vector<float> celsius;   ///< (n_frames x rows x columns) from the upper left as the array looks; NaN: dead
+};
+
 // What happened in a run beside its rows.
 
 /// One person at the end of one window, while they are there.

@@ -84,9 +84,10 @@ struct DoorSpec {
 };
 
 struct SceneSpec {
-  std::string name;                 ///< file name, for messages
-  std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
-  std::vector<SensorSpec> sensors;  ///< in file order: the order of the output columns
+  std::string name;                  ///< file name, for messages
+  std::vector<TriMesh> meshes;       ///< everything that occludes, world frame, cleaned
+  std::vector<SensorSpec> sensors;   ///< in file order: the order of the output columns
+  std::vector<SensorSpec> arrays{};  ///< those that give frames instead of a column
   std::vector<SeatSpec> seats;
   std::vector<PlaceSpec> places;  ///< to lie and to stand; those to sit are seats
   std::vector<EntranceSpec> entrances;

@@ -50,12 +50,13 @@ struct SensingSpec {
   RaysPerZone rays_per_zone = RaysPerZone::five;
   ChangePer change_per = ChangePer::cluster;
   Reader reader = Reader::in_step;
-  std::optional<Response> response;  ///< of all sensors; otherwise each its own
+  std::optional<Response> response;  ///< of all sensors but beams; otherwise each its own
   Units units = Units::typical;      ///< in the physical response
   /// Of surfaces and of the air, where the scene says nothing else: offices' mean. Ref: [Foldvary2018].
   double ambient_c = 23.0;
   /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
   int analog_rays_per_zone = 34;
+  std::optional<double> frame_rate_hz;  ///< of all thermopile arrays; otherwise each its own
 };
 
 /// Which cells a summary adds up, and what they are compared with.

@@ -13,8 +13,9 @@ namespace pirsim {
 // How a sensor turns what stands in its zones into motion, as plain data.
 
 enum class Response {
-  zones,  ///< hard zones: a change in which of them see a person is motion (the paper's)
-  analog  ///< physical: radiant power, pyroelectric element, amplifier, comparator (docs/physics/analog.md)
+  zones,   ///< hard zones: a change in which of them see a person is motion (the paper's)
+  analog,  ///< physical: radiant power, pyroelectric element, amplifier, comparator (docs/physics/analog.md)
+  beam     ///< a light barrier or a range finder: on while anything is nearer than a share of the idle distance
 };
 
 /// What the physical response needs of a lens beyond its zones.
@@ -113,6 +114,25 @@ struct SensitivitySpec {
   double sd = 0.0;  ///< of the logarithm
 };
 
+/// A thermopile array: a field of pixels, each of which tells the temperature of a black body of the radiance that it
+/// sees (docs/physics/arrays.md).
+struct ArraySpec {
+  int rows = 8, columns = 8;
+  double wide_deg = 60.0, tall_deg = 60.0;  ///< field of view, from the outer edge of the first pixel to the last one's
+  std::optional<double>
+      pixel_deg;         ///< full width at half of a pixel's Gaussian response; none: as far as its neighbour
+  double rate_hz = 1.0;  ///< frames a second; where there are two sub-pages, sub-pages
+  int sub_pages = 1;     ///< 2: each frame renews every other pixel, as the squares of a chess board
+  double netd_k = 0.0;   ///< noise of one pixel at 1 frame/s, rms; it grows as the root of the rate
+  double centre_noise = 1.0, corner_noise = 1.0;         ///< times that, in the middle and in a corner
+  double common_k = 0.0;                                 ///< the same, of what all pixels of one frame have in common
+  double offset_k = 0.0, column_k = 0.0, fixed_k = 0.0;  ///< rms over units: of all, of a column, of a pixel
+  int dead_pixels = 0;                                   ///< of a unit; they read nothing
+  double step_k = 0.0;                                   ///< readings are multiples of it; 0: any number
+  double from_um = 5.0, to_um = 14.0;                    ///< wavelengths that the window lets through
+  int rays_per_pixel = 24;
+};
+
 struct SensorModelSpec {
   std::string id;  ///< as scenes name it, "EKMC1604111"
   std::string description;
@@ -123,7 +143,9 @@ struct SensorModelSpec {
   SensitivitySpec sensitivity;
   Response response = Response::analog;
   OpticsSpec optics;
-  DetectorSpec detector;  ///< electronics, for the physical response
+  DetectorSpec detector;           ///< electronics, for the physical response
+  double idle_share = 1.0;         ///< of a beam: what is nearer than this share of the distance to the room breaks it
+  std::optional<ArraySpec> array;  ///< it is a thermopile array and nothing else; SceneSpec::arrays name it
 };
 
 }  // namespace pirsim

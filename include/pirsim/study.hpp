@@ -27,6 +27,11 @@ enum class Occupants {
   told      ///< also who is where and does what, a row a window and person
 };
 
+enum class Frames {
+  none,
+  taken  ///< also those of thermopile arrays
+};
+
 struct RunResult {
   std::uint32_t run = 0;
   int replicate = 0;
@@ -35,8 +40,9 @@ struct RunResult {
   std::vector<ZoneSet> zones;            ///< (n_ticks) active ones, from tick 1 on, if recorded
   std::vector<TraceRow> trace;           ///< (n_ticks x n_analog_sensors) if asked for; texts are the Model's
   std::vector<OccupantRow> occupants{};  ///< if asked for
+  std::vector<FrameStack> frames{};      ///< (n_arrays) if asked for
   std::vector<RunIncident> incidents{};  ///< in the order of time
-  std::optional<RunFault> fault{};       ///< then there are neither samples nor zones nor trace
+  std::optional<RunFault> fault{};       ///< then there is nothing of the above
 };
 
 struct StudyOptions {
@@ -48,6 +54,7 @@ struct StudyOptions {
   Trace trace = Trace::none;
   Occupants occupants = Occupants::counted;
   std::optional<std::vector<std::uint32_t>> chosen{};  ///< instead of `runs`: these, in this order
+  Frames frames = Frames::none;
 };
 
 /// Runs the study, or a part of it, and hands each run's result to `consume` in the order of runs, from one thread at
@@ -57,6 +64,7 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
 
 /// One run from beginning to end, with its fault if it can't go on.
 [[nodiscard]] RunResult run_once(const Model& model, std::uint32_t run, Record record = Record::samples,
-                                 Trace trace = Trace::none, Occupants occupants = Occupants::counted);
+                                 Trace trace = Trace::none, Occupants occupants = Occupants::counted,
+                                 Frames frames = Frames::none);
 
 }  // namespace pirsim

@@ -90,6 +90,11 @@ class Result:
     """Columns of what analog sensors received, one entry a tick and sensor: run, tick, sensor (index), power_w,
     signal_v, output, and the zone (index), person, part and share_v of the largest share; empty ones unless
     `run(signals=True)`."""
+    frames: dict[str, npt.NDArray[np.float32]] = field(default_factory=dict, repr=False)
+    """Of each thermal array by its id [run, frame, y, x] degrees Celsius, from the upper left as it looks; NaN of a dead
+    pixel, and behind the end of a run. Empty unless `run(frames=True)`."""
+    frame_time: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    """Of each array [frame] when it is read, in seconds since the run began."""
     faults: list[Fault] = field(default_factory=list)
     """Runs that could not go on; they are in the arrays, without a valid second."""
     incidents: list[Incident] = field(default_factory=list, repr=False)
@@ -105,6 +110,7 @@ class Result:
         for name, table in (("occupants", self.occupants), ("signals", self.signals)):
             rows = len(table.get("run", ()))
             extra += [f"{name}: {rows} rows"] if rows else []
+        extra += [f"frames of {name} {list(stack.shape)}" for name, stack in self.frames.items()]
         lines = [f"<pirsim.Result: {runs} runs of {counted(trials, 'trial', 'trials')}, up to {seconds} rows each, "
                  f"seed {self.seed}",
                  f"  bits {list(self.bits.shape)}, seconds with motion: {shares}{more}",

@@ -103,6 +103,8 @@ def counted(names: Sequence[str], one: str, many: str, most: int = 5) -> str:
 
 
 def sensor_model_text(model: specs.SensorModel) -> str:
+    if model.array:
+        return f"<pirsim.SensorModel {model.id!r}: {model.array.columns} x {model.array.rows} pixels>"
     zones = sum(len(cluster.zones) for cluster in model.clusters)
     reach = max((cluster.range_m for cluster in model.clusters), default=0.0)
     return (f"<pirsim.SensorModel {model.id!r}: {zones} zones in {len(model.clusters)} clusters, up to {reach:g} m, "

@@ -201,18 +201,19 @@ def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int] | 
 
 
 def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int = 0, zones: bool = False,
-        signals: bool = False, occupants: bool = False, progress: Progress | None = None) -> Result:
+        signals: bool = False, occupants: bool = False, frames: bool = False,
+        progress: Progress | None = None) -> Result:
     """Simulates runs of a study, all of them unless `runs` says which (a number, a range or a list).
 
-    threads: 0 for all cores; never changes a byte of the result. zones, signals, occupants: also what zones see, what
-    analog sensors receive and who is where (see Result); these take memory and time. progress: called with the number
+    threads: 0 for all cores; never changes a byte of the result. zones, signals, occupants, frames: also what zones
+    see, what analog sensors receive, who is where and what thermal arrays read (see Result); these take memory and time. progress: called with the number
     of runs done and of all runs, about ten times a second.
 
     Other Python threads run meanwhile; Ctrl-C ends it after the runs that have begun. A run that can't go on has no
     rows; `Result.faults` says why, and an IncompleteWarning that there are some.
     """
     arrays = _core.run(handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
-                       progress)
+                       frames, progress)
     result = make_result(arrays, model.sensors.names, model.areas, model.doors, model.seed)
     if result.faults:
         first = result.faults[0]

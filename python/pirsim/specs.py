@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from ._core import MeshSolid
 
 __all__ = [
-    "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Clock", "Cluster", "Comparator", "Counts",
-    "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
+    "Action", "Activity", "Amplifier", "Appear", "Area", "AreaCounts", "Array", "Clock", "Cluster", "Comparator",
+    "Counts", "Detector", "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame",
     "HeldMeeting", "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Pet",
     "Place", "Places", "Point2", "Point3", "Positions", "RatedTarget", "Report", "Resident", "Rise", "Scene",
     "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensitivity", "Sensor", "SensorModel", "Sit", "Staff",
@@ -262,6 +262,50 @@ class Sensitivity:
 
 
 @dataclass(slots=True)
+class Array:
+    """A thermopile array: what each pixel sees, as a temperature."""
+
+    rows: int = 8
+    """Of pixels."""
+    columns: int = 8
+    """Of pixels."""
+    wide_deg: float = 60.0
+    """Field of view from the left edge to the right."""
+    tall_deg: float = 60.0
+    """From the upper edge to the lower."""
+    pixel_deg: float | None = None
+    """Full width at half of a pixel's Gaussian response; by default as far as from pixel to pixel."""
+    rate_hz: float = 1.0
+    """Frames a second; with two sub-pages, sub-pages."""
+    sub_pages: int = 1
+    """2: each frame renews every other pixel, as the squares of a chess board."""
+    netd_k: float = 0.0
+    """Noise of one pixel at 1 frame/s, rms; it grows as the root of the rate."""
+    centre_noise: float = 1.0
+    """Times that, in the middle."""
+    corner_noise: float = 1.0
+    """Times that, in a corner."""
+    common_k: float = 0.0
+    """Noise at 1 frame/s, rms, that all pixels of one frame have in common."""
+    offset_k: float = 0.0
+    """Rms over units of what all pixels are off."""
+    column_k: float = 0.0
+    """Rms of what the pixels of one column are always off."""
+    fixed_k: float = 0.0
+    """Rms of what one pixel is always off."""
+    dead_pixels: int = 0
+    """Of a unit; they read nothing."""
+    step_k: float = 0.0
+    """Readings are multiples of it; 0: any number."""
+    from_um: float = 5.0
+    """Shortest wavelength that the window lets through."""
+    to_um: float = 14.0
+    """Longest one."""
+    rays_per_pixel: int = 24
+    """All pixels share the rays of the whole field."""
+
+
+@dataclass(slots=True)
 class SensorModel:
     """A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones."""
 
@@ -278,12 +322,16 @@ class SensorModel:
     """Of lens steps whose rated target isn't the usual one."""
     sensitivity: Sensitivity = field(default_factory=Sensitivity)
     """Of units, relative to what is guaranteed."""
-    response: Literal["zones", "analog"] = "analog"
-    """`zones`: a change of activity is motion; `analog`: the physical response."""
+    response: Literal["zones", "analog", "beam"] = "analog"
+    """`zones`: a change of activity is motion; `analog`: the physical response; `beam`: a light barrier."""
     optics: Optics = field(default_factory=Optics)
     """For the physical response."""
     detector: Detector = field(default_factory=Detector)
     """Electronics, for the physical response."""
+    idle_share: float = 1.0
+    """Of a beam: what is nearer than this share of the distance to the room breaks it."""
+    array: Array | None = None
+    """It is a thermopile array, which `Scene.arrays` name."""
 
     def __repr__(self) -> str:
         return _spec_parts.sensor_model_text(self)
@@ -315,6 +363,8 @@ class Scene:
     """Apart from each other, in the order of the output's columns."""
     sensor_models: dict[str, SensorModel] = field(default_factory=dict)
     """Every model that a sensor names."""
+    arrays: list[Sensor] = field(default_factory=list)
+    """Sensors that give frames instead of a column."""
     files: list[InputFile] = field(default_factory=list)
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
@@ -776,14 +826,16 @@ class Sensing:
     """Whose change of activity is motion."""
     reader: Literal["in_step", "free_running"] = "in_step"
     """When in a window each sensor is asked."""
-    response: Literal["zones", "analog"] | None = None
-    """Of all sensors; none: each its own."""
+    response: Literal["zones", "analog", "beam"] | None = None
+    """One of zones, analog; of all sensors but beams; none: each its own."""
     units: Literal["typical", "guaranteed", "drawn"] = "typical"
     """How sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or each `drawn`."""
     ambient_c: float = 23.0
     """Of surfaces and of the air, where the scene says nothing else."""
     analog_rays_per_zone: int = 34
     """In the physical response."""
+    frame_rate_hz: float | None = None
+    """Of all arrays; none: each its own."""
 
 
 @dataclass(slots=True)

@@ -67,7 +67,8 @@ nb::object column(std::vector<T>& values) {
 class RunArrays {
  public:
   /// n_areas: of Model::areas().
-  RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors);
+  RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors,
+            const std::vector<SensorSpec>& arrays = {});
 
   void add(const RunResult& result);
   /// Runs differ in length: arrays are as long as the longest, zeros behind the end of a run, where `valid` is false.
@@ -116,10 +117,12 @@ class RunArrays {
   void add_occupants(const RunResult& result);
   void add_signals(const RunResult& result);
   void add_zones(const RunResult& result);
+  void add_frames(const RunResult& result);
   [[nodiscard]] nb::dict occupants();
   [[nodiscard]] nb::dict signals();
   [[nodiscard]] nb::list zones();
   void add_rows(nb::dict& arrays);
+  void add_frames(nb::dict& arrays);
 
   std::size_t n_sensors_, n_areas_, n_doors_;
   std::size_t n_windows_ = 0;  ///< of the longest run
@@ -140,6 +143,12 @@ class RunArrays {
     std::vector<std::uint8_t> active;  ///< (n_ticks x n_zones)
   };
   std::vector<Zones> zones_;
+  struct Stacks {
+    std::string id;
+    FrameStack longest;  ///< its times; no temperatures
+    std::vector<std::vector<float>> runs;
+  };
+  std::vector<Stacks> stacks_;
 };
 
 std::uint16_t RunArrays::Words::number(std::string_view text) {
@@ -155,8 +164,10 @@ std::uint16_t RunArrays::Words::number(std::string_view text) {
 
 nb::tuple RunArrays::Words::all() const { return nb::tuple(to_python(texts_)); }
 
-RunArrays::RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors)
+RunArrays::RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors,
+                     const std::vector<SensorSpec>& arrays)
     : n_sensors_(n_sensors), n_areas_(n_areas), n_doors_(n_doors) {
+  for (const SensorSpec& array : arrays) stacks_.push_back({array.id, {}, {}});
   for (const Column<OccupantLine>& one : columns_of<OccupantLine>()) {
     const bool told_by_run = one.name == "replicate" || one.name == "trial" || one.holds == Holds::moment;
     if (one.when == When::with_areas && n_areas == 0) continue;
@@ -186,6 +197,33 @@ void RunArrays::add(const RunResult& result) {
   add_occupants(result);
   add_signals(result);
   add_zones(result);
+  add_frames(result);
+}
+
+void RunArrays::add_frames(const RunResult& result) {
+  for (std::size_t i = 0; i < stacks_.size(); ++i) {
+    stacks_[i].runs.emplace_back();
+    if (result.frames.empty()) continue;  // of a run that couldn't go on
+    const FrameStack& frames = result.frames[i];
+    stacks_[i].runs.back() = frames.celsius;
+    if (frames.times_s.size() >= stacks_[i].longest.times_s.size())
+      stacks_[i].longest = {frames.rows, frames.columns, frames.times_s, {}};
+  }
+}
+
+void RunArrays::add_frames(nb::dict& arrays) {
+  nb::dict frames, times;
+  for (Stacks& stack : stacks_) {
+    const auto n_frames = stack.longest.times_s.size(), rows = static_cast<std::size_t>(stack.longest.rows),
+               columns = static_cast<std::size_t>(stack.longest.columns), size = n_frames * rows * columns;
+    std::vector<float> all(stack.runs.size() * size, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < stack.runs.size(); ++i)
+      std::ranges::copy(stack.runs[i], all.begin() + static_cast<std::ptrdiff_t>(i * size));
+    frames[stack.id.c_str()] = to_numpy(std::move(all), {stack.runs.size(), n_frames, rows, columns});
+    times[stack.id.c_str()] = column(stack.longest.times_s);
+  }
+  arrays["frames"] = frames;
+  arrays["frame_time"] = times;
 }
 
 void RunArrays::add_occupants(const RunResult& result) {
@@ -276,6 +314,7 @@ void RunArrays::add_rows(nb::dict& arrays) {
 nb::dict RunArrays::to_dict() && {
   nb::dict arrays;
   add_rows(arrays);
+  add_frames(arrays);
   arrays["time"] = column(time_s_);
   arrays["run"] = column(run_);
   arrays["replicate"] = column(replicate_);
@@ -369,14 +408,16 @@ std::vector<std::uint32_t> all_runs(const Model& model) {
 
 std::size_t count_of(const Runs& runs, const Model& model) { return runs ? runs->size() : model.n_runs(); }
 
-nb::dict run(const Model& model, Runs runs, unsigned threads, bool zones, bool signals, bool occupants,
+nb::dict run(const Model& model, Runs runs, unsigned threads, bool zones, bool signals, bool occupants, bool frames,
              nb::handle progress) {
-  RunArrays arrays(model.scene().sensors.size(), model.areas().size(), model.scene().doors.size());
+  RunArrays arrays(model.scene().sensors.size(), model.areas().size(), model.scene().doors.size(),
+                   frames ? model.scene().arrays : std::vector<SensorSpec>{});
   StudyOptions options;
   options.threads = threads;
   options.record = zones ? Record::samples_and_zones : Record::samples;
   options.trace = signals ? Trace::signals : Trace::none;
   options.occupants = occupants ? Occupants::told : Occupants::counted;
+  options.frames = frames ? Frames::taken : Frames::none;
   const std::size_t n_runs = count_of(runs, model);
   options.chosen = std::move(runs);
   attend(progress, [&](Job& job) {
@@ -435,7 +476,7 @@ void add_study(nb::module_& module) {
       .def_prop_ro("n_runs", [](const Recording& recording) { return recording.runs.size(); });
   module.def("compile", &compile_model, "scene"_a, "script"_a, "overrides"_a, "folders"_a,
              "From files (texts) or objects of pirsim.specs.");
-  module.def("run", &run, "model"_a, "runs"_a.none(), "threads"_a, "zones"_a, "signals"_a, "occupants"_a,
+  module.def("run", &run, "model"_a, "runs"_a.none(), "threads"_a, "zones"_a, "signals"_a, "occupants"_a, "frames"_a,
              "progress"_a.none(), "Arrays of pirsim.Result, by name.");
   module.def("record", &record_runs, "model"_a, "runs"_a.none(), "threads"_a, "progress"_a.none(),
              "What the optics showed in these runs.");

@@ -70,8 +70,10 @@ nb::dict check_model(const Model& model) {
   nb::list sensors;
   for (std::size_t i = 0; i < report.sight.sensors.size(); ++i) {
     const SensorSight& sight = report.sight.sensors[i];
-    sensors.append(nb::make_tuple(to_python(sight.sensor), sight.rays, sight.rays_cut, sight.longest_m, sight.places,
-                                  nb::tuple(to_python(sight.seats)), nb::tuple(to_python(report.work.deaf_seats(i)))));
+    sensors.append(nb::make_tuple(
+        to_python(sight.sensor), sight.rays, sight.rays_cut, sight.longest_m, sight.places,
+        nb::tuple(to_python(sight.seats)),
+        i < model.scene().sensors.size() ? nb::tuple(to_python(report.work.deaf_seats(i))) : nb::tuple()));
   }
   nb::dict result;
   result["sensors"] = sensors;

@@ -23,6 +23,7 @@
 #include "files/disk/file.hpp"
 #include "files/write/campaign.hpp"
 #include "files/write/casas_writer.hpp"
+#include "files/write/frame_writer.hpp"
 #include "files/write/row_file.hpp"
 #include "files/write/summary.hpp"
 #include "model/core/text.hpp"
@@ -299,7 +300,27 @@ void check_options(const RunOptions& options) {
   }
 }
 
+namespace {
+
+/// A file a run and array, and one of the frame that is asked for.
+void write_frames(const Model& model, const RunOptions& options, const RunResult& result) {
+  for (std::size_t i = 0; i < result.frames.size(); ++i) {
+    const std::filesystem::path file =
+        options.frames / io::frame_file(model.scene().arrays[i].id, result.trial, result.replicate);
+    io::write_text_file(file, io::to_npy(result.frames[i]));
+    if (options.frame_s)
+      io::write_text_file(std::filesystem::path(file).replace_extension(".frame.csv"),
+                          io::frame_to_csv(result.frames[i], *options.frame_s));
+  }
+}
+
+}  // namespace
+
 void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
+  if (!options.frames.empty()) {
+    if (model.scene().arrays.empty()) throw Error(ErrorCode::usage, "--frames: the scene has no thermal array");
+    make_folder(options.frames);
+  }
   if (inputs.verbosity != Verbosity::quiet) {
     const Progress looking({.what = "looking at what sensors see"}, inputs.verbosity);
     tell(studies::warnings(studies::look_around(model), model.scene()), inputs.verbosity);
@@ -320,6 +341,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
   study.trace = options.trace.empty() ? Trace::none : Trace::signals;
   study.occupants = !options.occupants.empty() || others.need_occupants() ? Occupants::told : Occupants::counted;
+  study.frames = options.frames.empty() ? Frames::none : Frames::taken;
   study.runs = runs;
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
   study.window_done = [&] { progress.simulated(window_s); };
@@ -330,6 +352,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
       if (result.fault && options.faults == RunOptions::Faults::stop) {
         throw Error(ErrorCode::infeasible, describe(failed_run(result, model.compiled().clock_of(result.run))));
       }
+      if (!options.frames.empty()) write_frames(model, options, result);
       const std::size_t n_bytes = tables.add_run(result, notes_of(result, model));
       if (done == 0 && !options.occupants.empty()) announce("--occupants", n_bytes, model, inputs.verbosity);
       others.add(result);
@@ -386,6 +409,13 @@ void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& opt
   offer_output(command, "--casas", options->casas,
                "a log of sensors and what people do, as CASAS' homes have it, .txt, .txt.gz or .txt.zst",
                {".txt", ".txt.gz", ".txt.zst"});
+  offer_output_folder(command, "--frames", options->frames,
+                      "folder for frames of thermal arrays: a stack a run and array, .npy, [frame, y, x] in degrees C",
+                      {"*.npy", "*.frame.csv"});
+  command.add_option("--frame", options->frame_s, "of --frames: also the frame at this second of each run, as CSV")
+      ->option_text("SECOND")
+      ->needs("--frames")
+      ->check(CLI::NonNegativeNumber);
   offer_threads(command, options->threads);
   CLI::Option* shard =
       command

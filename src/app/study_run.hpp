@@ -54,6 +54,8 @@ struct RunOptions {
   std::filesystem::path occupants;  ///< as zones
   std::filesystem::path casas;      ///< text, compressed as zones are
   std::filesystem::path report;     ///< .html
+  std::filesystem::path frames;     ///< folder
+  std::optional<double> frame_s;    ///< a moment of the run whose frame is written as CSV, too
   std::optional<double> max_time_s;
   unsigned threads = 0;
   enum class Faults { note, stop } faults = Faults::note;  ///< of single runs

@@ -225,6 +225,9 @@ std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double st
 }
 
 void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors) {
+  if (recipe.frames == Frames::taken)
+    throw Error(ErrorCode::input, Where{recipe.file.string()},
+                "calibrate works on rows of motion, which a thermal array doesn't give: leave out 'frames'");
   if (recipe.n_rooms() < fewest_rooms) {
     throw Error(ErrorCode::input, Where{recipe.file.string()},
                 "a calibration needs " + std::to_string(fewest_rooms) + " rooms at least, better 60; it has " +

@@ -9,6 +9,7 @@
 
 #include "engine/sim/compiled_study.hpp"
 #include "engine/study/people.hpp"
+#include "model/schema/check_scene.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/room.hpp"
 #include "surveys/sight.hpp"
@@ -248,6 +249,7 @@ void ModelFinder::add_to(SceneSpec& scene) {
     }
     scene.sensor_models.emplace(sensor.model, known_.at(sensor.model));
   }
+  move_arrays(scene);
 }
 
 void Failures::give_up(const std::string& what, int number, const std::string& drawn_from, const Where& where) const {
@@ -618,6 +620,14 @@ std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream) {
   return Furnisher(spec, stream).furnish();
 }
 
+namespace {
+
+void number_through(std::vector<SensorSpec>& sensors, const std::string& kind) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) sensors[i].id = kind + std::to_string(i + 1);
+}
+
+}  // namespace
+
 DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
   std::vector<ModelFinder::Named> named;
   for (const SensorGroupSpec& group : spec.sensors) named.push_back({group.models, group.where});
@@ -635,6 +645,10 @@ DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const 
     room.tries = tries;
     room.scene.name = "room " + std::to_string(number);
     models.add_to(room.scene);
+    if (!room.scene.arrays.empty()) {
+      number_through(room.scene.sensors, "PIR");
+      number_through(room.scene.arrays, "ARRAY");
+    }
     const std::string fault = fault_of(room.scene);
     if (fault.empty()) return std::move(room);
     failures.add(fault);

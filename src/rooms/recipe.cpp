@@ -671,6 +671,7 @@ SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
 
 void read_outputs(YamlMap& map, RecipeSpec& recipe) {
   recipe.occupants = map.flag("occupants", false) ? Occupants::told : Occupants::counted;
+  recipe.frames = map.flag("frames", false) ? Frames::taken : Frames::none;
   std::vector<std::pair<std::string, std::string>> endings;
   for (const std::string& ending : io::table_endings()) endings.emplace_back(ending, ending);
   recipe.ending = map.choice<std::string>("rows", recipe.ending, endings);

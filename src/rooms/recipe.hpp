@@ -30,8 +30,9 @@ namespace pirsim::dataset {
 [[nodiscard]] std::string room_name(int room);  ///< "room_0003"
 /// Files and folders that a dataset is made of, beside its recipe, provenance and journals.
 inline constexpr std::array dataset_parts{
-    "README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv", "areas.csv",
-    "doors.csv", "pictures",         "rooms",     "scripts",     "rows",     "occupants",   "exports"};
+    "README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv",
+    "areas.csv", "doors.csv",        "pictures",  "rooms",       "scripts",  "rows",
+    "occupants", "frames",           "exports"};
 // Relative to the dataset's folder.
 [[nodiscard]] std::string room_path(int room);  ///< "rooms/room_0003.gltf"
 /// "rows/room_0003/day_01.csv"

@@ -308,6 +308,7 @@ struct Fields<dataset::RecipeSpec> {
       FIELD(effects),
       FIELD(split),
       FIELD(occupants, "`true`: also who is where, a line a window and person"),
+      FIELD(frames, "`true`: also the frames of thermal arrays, a file a room, day and array"),
       FIELD(exports),
       field("rows", &S::ending, "or .csv, .csv.zst"),
       FIELD(pictures, IntegerRange{.min = 0, .max = 1000}, "of so many rooms, the first ones"),

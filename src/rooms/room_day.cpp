@@ -11,6 +11,7 @@
 #include "files/disk/compression.hpp"
 #include "files/write/campaign.hpp"
 #include "files/write/casas_writer.hpp"
+#include "files/write/frame_writer.hpp"
 #include "model/core/random.hpp"
 #include "model/schema/check_scene.hpp"
 #include "model/schema/clock.hpp"
@@ -171,11 +172,13 @@ class DayWriter {
     door_of_column_ = places(columns.doors, doors_);
   }
 
-  void write(const RunResult& result) {
+  void write(const RunResult& result, const std::vector<SensorSpec>& arrays) {
     const Movements moved = movements(result);
     note(result, moved);
     add(path("rows", recipe_.ending), rows(result.samples, moved));
     if (recipe_.occupants == Occupants::told) add(path("occupants", recipe_.ending), occupants(result.occupants));
+    for (std::size_t i = 0; i < result.frames.size(); ++i)
+      add(path("frames", '_' + arrays[i].id + ".npy"), io::to_npy(result.frames[i]));
     for (const Export shape : recipe_.exports) {
       if (shape == Export::uci864) {
         const int n_rows = rows_per_reading(recipe_.sensing).value();
@@ -309,12 +312,12 @@ RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const Colu
   const std::string script_text = io::to_yaml(script);
   try {
     const Model model = room.model(std::move(script));
-    const RunResult result =
-        run_once(model, static_cast<std::uint32_t>(day - 1), Record::samples, Trace::none, Occupants::told);
+    const RunResult result = run_once(model, static_cast<std::uint32_t>(day - 1), Record::samples, Trace::none,
+                                      Occupants::told, recipe.frames);
     if (result.fault) {
       record.fault = result.fault->message;
     } else {
-      writer.write(result);
+      writer.write(result, room.scene().arrays);
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
@@ -469,13 +472,22 @@ std::string provenance_of(const RecipeSpec& recipe, const std::map<OwnScene, Sce
   return text + ", sensors " + print.digest().substr(0, 16) + ", " + program() + ", " + compiler();
 }
 
+/// Groups of nothing but arrays have no column.
+bool has_columns(const SensorGroupSpec& group, const io::SceneOptions& options) {
+  return std::ranges::any_of(models_of(group), [&](const std::string& model) {
+    return !io::find_sensor_model(model, {}, options, group.where).array;
+  });
+}
+
 /// PIR1, PIR2, ..., as many as a drawn room may have.
-std::vector<std::string> numbered_sensors(const RecipeSpec& recipe) {
+std::vector<std::string> numbered_sensors(const RecipeSpec& recipe, const io::SceneOptions& options) {
   int most = 0;
   for (const RoomGroupSpec& group : recipe.rooms) {
     int sensors = 0;
-    for (const SensorGroupSpec& sensor : group.rooms.sensors) sensors += sensor.count.most;
-    if (group.scenes.empty() && !group.home) most = std::max(most, sensors);
+    if (!group.scenes.empty() || group.home) continue;
+    for (const SensorGroupSpec& sensor : group.rooms.sensors)
+      sensors += has_columns(sensor, options) ? sensor.count.most : 0;
+    most = std::max(most, sensors);
   }
   std::vector<std::string> names;
   for (int i = 1; i <= most; ++i) names.push_back("PIR" + std::to_string(i));
@@ -488,9 +500,10 @@ void add_new(std::vector<std::string>& names, const std::vector<std::string>& mo
   }
 }
 
-ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
+ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes,
+                        const io::SceneOptions& options) {
   ColumnOwners columns;
-  columns.sensors = numbered_sensors(recipe);
+  columns.sensors = numbered_sensors(recipe, options);
   const auto add = [&](const ColumnOwners& names) {
     add_new(columns.sensors, names.sensors);
     add_new(columns.areas, names.areas);
@@ -526,7 +539,7 @@ Store::Store(const RecipeSpec& recipe, fs::path folder, const io::SceneOptions& 
     }
   }
   provenance_ = provenance_of(recipe_, own_scenes_, scenes_);
-  columns_ = columns_of(recipe_, own_scenes_);
+  columns_ = columns_of(recipe_, own_scenes_, scenes_);
 }
 
 const SceneSpec* Store::own_scene(int room) const {

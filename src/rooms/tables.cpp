@@ -566,6 +566,10 @@ std::string readme(const Description& described) {
   text += rooms_and_scripts(described);
   if (recipe.occupants == Occupants::told)
     text += "- `occupants/`: who is where and does what, a line a window and person.\n";
+  if (recipe.frames == Frames::taken)
+    text +=
+        "- `frames/`: what thermal arrays read, [frame, y, x] in degrees Celsius, a NumPy file a room, day and "
+        "array.\n";
   if (!recipe.exports.empty()) text += "- `exports/`: the same data in other tools' shapes.\n";
   text += "- `recipe.yaml`: what it was made from.\n\n";
   if (failed > 0)

@@ -185,6 +185,7 @@ class Room {
     });
     const { areas, seats, doors } = this.run;
     for (const area of areas) add("area", area.name, area.position);
+    for (const array of this.run.arrays || []) add("seat", array.id, array.position);
     for (const seat of seats) add("seat", seat.name, seat.position);
     for (const door of doors) add("door", /door/.test(door.name) ? door.name : "door " + door.name, door.position);
     for (const head of this.heads) {

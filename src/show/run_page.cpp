@@ -1,6 +1,8 @@
 #include "show/run_page.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
@@ -89,6 +91,25 @@ Json json(const PageSensor& sensor) {
           {"negative_v", sensor.negative_v}};
 }
 
+/// A byte a pixel, 1 to 255 from the coldest to the warmest of all frames; 0: dead.
+Json json(const PageArray& array) {
+  float lowest = std::numeric_limits<float>::max(), highest = std::numeric_limits<float>::lowest();
+  for (const std::vector<float>& frame : array.celsius) {
+    for (const float value : frame) {
+      if (!std::isnan(value)) lowest = std::min(lowest, value), highest = std::max(highest, value);
+    }
+  }
+  const float step = std::max(highest - lowest, 0.1F) / 254.0F;
+  std::string bytes;
+  for (const std::vector<float>& frame : array.celsius) {
+    for (const float value : frame)
+      bytes += std::isnan(value) ? '\0' : static_cast<char>(1 + std::lround((value - lowest) / step));
+  }
+  return {{"id", array.id},     {"model", array.model},     {"position", json(array.world_from_sensor.origin)},
+          {"rows", array.rows}, {"columns", array.columns}, {"lowest_c", lowest},
+          {"step_k", step},     {"bytes", base64(bytes)},   {"at_key", array.at_key}};
+}
+
 Json json(const std::vector<Sample>& rows) {
   Json times = Json::array(), people = Json::array(), phases = Json::array(), bits = Json::array();
   Json people_of_areas = Json::array();
@@ -130,6 +151,8 @@ std::string json_text(const RunPage& page) {
            {"counted", page.counted},   {"people", Json::array()},           {"active_zones", page.active_zones},
            {"rows", json(page.rows)}};
   for (const PageSensor& sensor : page.sensors) all["sensors"].push_back(json(sensor));
+  if (!page.arrays.empty()) all["arrays"] = Json::array();
+  for (const PageArray& array : page.arrays) all["arrays"].push_back(json(array));
   for (const ExportedPerson& person : page.run.people) all["people"].push_back(person.id);
   if (page.map) all["map"] = json(*page.map);
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -35,6 +35,15 @@ struct PageSensor {
   double negative_v = 0.0;
 };
 
+struct PageArray {
+  std::string id;
+  std::string model;
+  Frame world_from_sensor;
+  int rows = 0, columns = 0;
+  std::vector<std::vector<float>> celsius;  ///< (n_frames x rows * columns)
+  std::vector<std::uint32_t> at_key;        ///< (n_keys) which of them
+};
+
 /// Squares of the floor and how often each sensor sees a moving target there.
 struct PageMap {
   std::string name;
@@ -54,6 +63,7 @@ struct RunPage {
   double window_s = 1.0;
   ExportedRun run;  ///< beams of every sensor, in the order of `sensors`
   std::vector<PageSensor> sensors;
+  std::vector<PageArray> arrays;
   std::vector<PagePlace> seats;
   std::vector<PagePlace> doors;
   std::vector<PageArea> areas;

@@ -167,3 +167,31 @@ function stepBetween(span, width) {
   const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200];
   return steps.find((step) => (step / span) * width >= 70) || 14400;
 }
+
+/// What a thermal array reads at a moment, from the coldest of the run to its warmest.
+class FrameView {
+  constructor(array, place) {
+    this.array = array;
+    this.pixels = Uint8Array.from(atob(array.bytes), (c) => c.charCodeAt(0));
+    const figure = document.createElement("figure"), caption = document.createElement("figcaption");
+    this.canvas = document.createElement("canvas");
+    this.caption = caption;
+    Object.assign(this.canvas, { width: array.columns, height: array.rows });
+    this.canvas.setAttribute("aria-label", `Frame of ${array.id} (${array.model})`);
+    figure.append(this.canvas, caption);
+    place.append(figure);
+  }
+
+  show(key) {
+    const { rows, columns, at_key: atKey, lowest_c: lowest, step_k: step, id } = this.array, n = rows * columns;
+    const frame = this.pixels.subarray(n * atKey[key], n * (atKey[key] + 1));
+    const pen = this.canvas.getContext("2d"), image = pen.createImageData(columns, rows);
+    frame.forEach((byte, i) => {
+      const share = (byte - 1) / 254, dead = byte === 0;  // black, red, yellow, white
+      image.data.set(dead ? [128, 128, 128, 255] : [3, 3, 3].map((times, k) => 255 * Math.min(1, Math.max(0, times * share - k))).concat(255), 4 * i);
+    });
+    pen.putImageData(image, 0, 0);
+    const celsius = (byte) => (lowest + (byte - 1) * step).toFixed(1), alive = frame.filter((byte) => byte > 0);
+    this.caption.textContent = `${id}: ${celsius(Math.min(...alive))} to ${celsius(Math.max(...alive))} °C`;
+  }
+}

@@ -42,6 +42,7 @@
 
   let room = null;
   const timeLine = new TimeLine(run, choose);
+  const frames = (run.arrays || []).map((array) => new FrameView(array, byId("frames")));
   /// Of each sensor.
   const buttons = () => sensors.map((_, i) => [timeLine.buttons[i], ...(room ? [room.buttons[i]] : [])]);
 
@@ -54,6 +55,7 @@
     if (room) room.showTime();
     if (key !== shown.key) {
       shown.key = key;
+      frames.forEach((frame) => frame.show(key));
       if (room) room.showZones();
     }
     if (row === shown.row) return;

@@ -321,6 +321,9 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   }
   line("any sensor", "", "", "", fixed(percent(report.places_seen_by_any), 1));
   out << '\n';
+  for (const SensorSight& sight : report.sensors) {
+    if (!sight.about.empty()) out << "  " << sight.sensor << ": " << sight.about << '\n';
+  }
   const auto is_floor = [&](const TriMesh& mesh) {
     return studies::role_of(mesh, scene.floor.height_m()) == studies::MeshRole::floor;
   };

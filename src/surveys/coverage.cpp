@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <iomanip>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "engine/effects/catalogue.hpp"
 #include "engine/pir/optics.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "model/core/parallel.hpp"
 #include "model/core/text.hpp"
 #include "model/geom/ray_tests.hpp"
@@ -99,6 +101,7 @@ class SquareCounter {
         exposures_(n_poses_, array_.unexposed()),
         triggers_(array_.n_sensors()),
         radiance_(pir::band_radiance(pir::kelvin(study.spec().target.temperature_c))) {
+    for (const auto& array : study.survey().arrays()) watches_.emplace_back(*array, fastest_tracer);
     for (const TurningCross& cross : study.target().crosses()) {
       Posed& posed = posed_.emplace_back();
       for (const auto& rotation : cross.rotation) posed.half_axes.push_back(half_axes(cross.bar, rotation));
@@ -106,8 +109,9 @@ class SquareCounter {
     }
   }
 
-  /// counts: (n_sensors); square: its number, which keys what effects draw.
-  void count(const Vec2& point, std::uint32_t square, std::span<MotionCount> counts) {
+  /// all: (n_counted); square: its number, which keys what effects draw.
+  void count(const Vec2& point, std::uint32_t square, std::span<MotionCount> all) {
+    const std::span<MotionCount> counts = all.first(array_.n_sensors());
     foot_ = {point.x, study_.scene().floor.height_m(), point.y};
     for (Posed& posed : posed_) posed.up_to_date = 0;
     const bool anything = expose();
@@ -118,9 +122,26 @@ class SquareCounter {
     } else {
       std::ranges::fill(counts, MotionCount{0});
     }
+    for (std::size_t i = 0; i < watches_.size(); ++i) all[counts.size() + i] = windows_seen(watches_[i]);
   }
 
  private:
+  /// Windows at whose end the array sees the crosses.
+  MotionCount windows_seen(sim::ArrayWatch& watch) {
+    sim::BodyRadiance radiance{};
+    radiance.fill(pir::band_radiance(pir::kelvin(study_.spec().target.temperature_c), watch.array().band()));
+    std::vector<std::optional<bool>> seen(n_poses_);
+    MotionCount count = 0;
+    std::int64_t tick = 0;
+    for (int window = 0; window < study_.n_windows(); ++window) {
+      tick += study_.survey().sensing().ticks_per_window;
+      auto& now = seen[static_cast<std::size_t>(tick) % n_poses_];
+      if (!now) now = watch.look(study_.target().solids(foot_, tick), radiance).is_seen();
+      count = static_cast<MotionCount>(count + (*now ? 1 : 0));
+    }
+    return count;
+  }
+
   /// A cross at the present square; posed when the first ray comes near.
   struct Posed {
     std::vector<std::vector<Vec3>> half_axes;
@@ -274,7 +295,8 @@ class SquareCounter {
   std::vector<std::uint8_t> turn_;        ///< (n_sensors x n_poses) from the pose before to this one
   std::vector<std::uint8_t> any_;         ///< (n_sensors)
   Sample row_;
-  double radiance_;  ///< of the crosses, W m^-2 sr^-1
+  double radiance_;                       ///< of the crosses, W m^-2 sr^-1
+  std::vector<sim::ArrayWatch> watches_;  ///< (n_arrays)
 };
 
 ScriptSpec as_script(const CoverageSpec& spec) {
@@ -352,7 +374,12 @@ SurveyBase::SurveyBase(SceneSpec scene, const ScriptSpec& script)
     : study_(effects::in_force(without_noise(std::move(scene)), script)),
       array_(std::make_unique<const sim::SensorArray>(study_.scene, study_.sensing,
                                                       std::make_shared<const rt::Room>(study_.scene.meshes))),
-      stages_(script.effects, {study_.scene, study_.sensing, array_->clipped()}) {}
+      stages_(script.effects, {study_.scene, study_.sensing, array_->clipped()}) {
+  for (std::size_t i = 0; i < study_.scene.arrays.size(); ++i) {
+    arrays_.push_back(std::make_shared<const sim::ThermalArray>(study_.scene, i, study_.sensing, study_.seed,
+                                                                array_->room(), array_->leaves()));
+  }
+}
 
 std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey, effects::Survey kind) {
   Diagnostics remarks;
@@ -462,13 +489,13 @@ std::vector<Issue> CoverageStudy::warnings() const {
 }
 
 std::vector<MotionCount> CoverageStudy::counts_at(const Vec2& point) const {
-  std::vector<MotionCount> counts(scene().sensors.size());
+  std::vector<MotionCount> counts(n_counted());
   SquareCounter(*this).count(point, static_cast<std::uint32_t>(grid_.n_rows() * grid_.n_columns()), counts);
   return counts;
 }
 
 std::vector<MotionCount> CoverageStudy::counts_of_row(std::size_t row) const {
-  const std::size_t n_sensors = scene().sensors.size();
+  const std::size_t n_sensors = n_counted();
   std::vector<MotionCount> counts(grid_.n_columns() * n_sensors, 0);
   SquareCounter counter(*this);
   for (std::size_t column = 0; column < grid_.n_columns(); ++column) {
@@ -482,6 +509,7 @@ std::vector<MotionCount> CoverageStudy::counts_of_row(std::size_t row) const {
 CoverageMap empty_map(const CoverageStudy& study) {
   CoverageMap map{study.grid(), {}, study.n_windows(), {}};
   for (const SensorSpec& sensor : study.scene().sensors) map.sensors.push_back(sensor.id);
+  for (const SensorSpec& array : study.scene().arrays) map.sensors.push_back(array.id);
   return map;
 }
 

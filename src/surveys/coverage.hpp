@@ -39,6 +39,8 @@ class SurveyBase {
   [[nodiscard]] const std::vector<TrialInForce>& trials() const noexcept { return study_.trials; }
   [[nodiscard]] std::uint64_t seed() const noexcept { return study_.seed; }
   [[nodiscard]] const sim::SensorArray& array() const noexcept { return *array_; }
+  /// (n_arrays)
+  [[nodiscard]] const std::vector<std::shared_ptr<const sim::ThermalArray>>& arrays() const noexcept { return arrays_; }
   [[nodiscard]] const effects::Pipeline& stages() const noexcept { return stages_; }
   [[nodiscard]] sim::Detector make_detector() const { return sim::Detector(*array_); }
   [[nodiscard]] sim::Logger make_logger() const { return {stages_, study_.sensing, array_->n_sensors()}; }
@@ -46,6 +48,7 @@ class SurveyBase {
  private:
   StudyInForce study_;
   std::unique_ptr<const sim::SensorArray> array_;
+  std::vector<std::shared_ptr<const sim::ThermalArray>> arrays_;
   effects::Pipeline stages_;
 };
 
@@ -147,9 +150,11 @@ class CoverageStudy {
   /// Effects that a coverage study can't show.
   [[nodiscard]] std::vector<Issue> warnings() const;
 
-  /// (n_sensors) counts of the target at one point of the floor.
+  /// Columns of the map: sensors, then arrays, whose counts are of windows that end with a frame in which they see it.
+  [[nodiscard]] std::size_t n_counted() const noexcept { return scene().sensors.size() + scene().arrays.size(); }
+  /// (n_counted) counts of the target at one point of the floor.
   [[nodiscard]] std::vector<MotionCount> counts_at(const Vec2& point) const;
-  /// (n_columns x n_sensors) counts of a row of squares; zeros off the floor.
+  /// (n_columns x n_counted) counts of a row of squares; zeros off the floor.
   [[nodiscard]] std::vector<MotionCount> counts_of_row(std::size_t row) const;
 
  private:

@@ -12,6 +12,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "engine/sim/observer.hpp"
 #include "engine/sim/run_state.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "files/write/gltf_writer.hpp"
 #include "model/core/range.hpp"
 #include "model/core/text.hpp"
@@ -123,6 +124,34 @@ class Peaks {
 
  private:
   std::vector<double> peaks_;
+};
+
+/// What arrays have read last.
+class FilmCameras {
+ public:
+  FilmCameras(const Model& model, std::uint32_t run) {
+    for (const auto& array : model.compiled().arrays()) cameras_.emplace_back(*array, model.compiled().tracer(), run);
+    n_read_.resize(cameras_.size());
+  }
+
+  void look(const State& state) {
+    for (sim::Camera& camera : cameras_) camera.look(state.run_state());
+  }
+  void take(std::vector<FilmFrames>& frames) {
+    frames.resize(cameras_.size());
+    for (std::size_t i = 0; i < cameras_.size(); ++i) {
+      const FrameStack& stack = cameras_[i].frames();
+      if (frames[i].celsius.empty() || stack.times_s.size() != n_read_[i])
+        frames[i].celsius.emplace_back(cameras_[i].last().begin(), cameras_[i].last().end());
+      n_read_[i] = stack.times_s.size();
+      frames[i].rows = stack.rows, frames[i].columns = stack.columns;
+      frames[i].at_key.push_back(static_cast<std::uint32_t>(frames[i].celsius.size() - 1));
+    }
+  }
+
+ private:
+  std::vector<sim::Camera> cameras_;
+  std::vector<std::size_t> n_read_;  ///< (n_arrays) at the last key
 };
 
 // The page that plays a run.
@@ -263,6 +292,12 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Shown
   page.rows = std::move(film.rows);
   drop_absent_people(page.run);
   page.active_zones = std::move(film.active_zones);
+  for (std::size_t i = 0; i < film.frames.size(); ++i) {
+    const SensorSpec& array = model.compiled().scene().arrays[i];
+    FilmFrames& frames = film.frames[i];
+    page.arrays.push_back({array.id, array.model, array.world_from_sensor, frames.rows, frames.columns,
+                           std::move(frames.celsius), std::move(frames.at_key)});
+  }
   for (const SeatSpec& seat : model.compiled().scene().seats)
     page.seats.push_back({seat.id, seat.world_from_seat.origin});
   for (const EntranceSpec& door : model.compiled().scene().entrances)
@@ -389,9 +424,11 @@ Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
     result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
   result.signals_v.resize(model.scene().sensors.size());
   Peaks peaks(result.signals_v.size());
+  FilmCameras cameras(model, run);
   const std::int64_t first_tick = state.tick();
   while (true) {
     peaks.look(state);
+    cameras.look(state);
     const bool ends = state.finished() || time_s(state) >= spec.to_s;
     if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
       result.run.key_times_s.push_back(time_s(state));
@@ -400,6 +437,7 @@ Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
         result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
       result.active_zones.push_back(members(state.zones()));
       peaks.take(state, result.signals_v);
+      cameras.take(result.frames);
     }
     if (ends) return result;
     if (!step_tick(model, state)) continue;

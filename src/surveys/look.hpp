@@ -20,6 +20,13 @@ struct FilmSpec {
   std::function<void(double seconds)> simulated{};  ///< after so much more, as far as from_s too
 };
 
+/// Frames of one thermal array, as many as are new at a key.
+struct FilmFrames {
+  int rows = 0, columns = 0;
+  std::vector<std::vector<float>> celsius;  ///< (n_frames x rows * columns)
+  std::vector<std::uint32_t> at_key;        ///< (n_keys) which of them
+};
+
 struct Film {
   io::ExportedRun run;
   std::vector<Sample> rows;  ///< of the windows from from_s to to_s
@@ -28,6 +35,7 @@ struct Film {
   /// (n_sensors x n_keys) of each analog sensor: volts above the offset, the largest by amount since the key before.
   /// Empty for a sensor that answers by its zones.
   std::vector<std::vector<double>> signals_v;
+  std::vector<FilmFrames> frames{};  ///< (n_arrays)
 };
 
 /// Bytes of the film's animation: of so many people for so long.

@@ -661,10 +661,16 @@ void keep_the_better(PlacementSearch& search, PlacementAim by) {
 
 PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
   if (spec.by == PlacementAim::seats) require_seats(scene, spec);
+  refuse_arrays(scene, "placements");
   add_models(scene, spec, options);
   for (const std::string& model : options.each_area) {
     if (!scene.sensor_models.contains(model))
       scene.sensor_models[model] = io::find_sensor_model(model, options.scene_file, options.scenes, {});
+  }
+  for (const auto& [name, model] : scene.sensor_models) {
+    if (model.array)
+      throw Error(ErrorCode::input, Where{scene.name},
+                  "placements works on rows of motion, which a thermal array ('" + name + "') doesn't give");
   }
   PlacementReport report;
   const auto set_done = options.set_done ? options.set_done : [] {};

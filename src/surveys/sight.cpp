@@ -16,6 +16,7 @@
 #include "engine/sim/plan_people.hpp"
 #include "engine/sim/run_state.hpp"
 #include "engine/sim/schedule.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "model/core/error.hpp"
 #include "model/core/parallel.hpp"
 #include "model/core/text.hpp"
@@ -219,9 +220,15 @@ class Onlooker {
   Onlooker(const Model& model, const body::Humanoid& humanoid)
       : rays_(model.compiled().array().rated()),
         humanoid_(humanoid),
-        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {}
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {
+    for (const auto& array : model.compiled().arrays()) {
+      watches_.emplace_back(*array, model.compiled().tracer());
+      radiances_.push_back(sim::radiance_of(WarmthSpec{}, model.compiled().sensing().ambient_c, array->band()));
+      contrasts_k_.emplace_back();
+    }
+  }
 
-  /// (n_sensors) whether the sensor sees the posture.
+  /// (n_sensors + n_arrays) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {
     std::vector<PosedShape> solids;
     for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
@@ -233,14 +240,37 @@ class Onlooker {
       const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
       seen.push_back(std::ranges::any_of(std::views::iota(first, last), [&](auto zone) { return zones.test(zone); }));
     }
+    for (std::size_t i = 0; i < watches_.size(); ++i) {
+      const sim::ArrayWatch::Contrast contrast = watches_[i].look(solids, radiances_[i]);
+      seen.push_back(contrast.is_seen());
+      if (contrast.is_seen()) contrasts_k_[i].push_back(contrast.kelvin);
+    }
     return seen;
   }
+  /// (n_arrays) of the postures that each has seen so far, K.
+  [[nodiscard]] const std::vector<std::vector<double>>& contrasts_k() const noexcept { return contrasts_k_; }
 
  private:
   const RayBundle& rays_;
   const body::Humanoid& humanoid_;
   std::unique_ptr<rt::Tracer> tracer_;
+  std::vector<sim::ArrayWatch> watches_;  ///< (n_arrays), as the others
+  std::vector<sim::BodyRadiance> radiances_;
+  std::vector<std::vector<double>> contrasts_k_;
 };
+
+/// "8 x 8 pixels, 0.16 K a reading in the middle; a person at rest changes the pixel that shows it best by 0.5 to 5.1
+/// K"
+std::string about(const sim::ThermalArray& array, std::vector<double> contrasts_k) {
+  const ArraySpec& spec = array.spec();
+  const auto middle = static_cast<std::size_t>((spec.rows / 2) * spec.columns + spec.columns / 2);
+  std::string text = std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " pixels, noise " +
+                     fixed(array.noise_k(middle), 2) + " K in the middle";
+  if (contrasts_k.empty()) return text;
+  const auto [least, most] = std::ranges::minmax(contrasts_k);
+  return text + "; a person at rest changes the pixel that shows it best by " + fixed(least, 2) + " to " +
+         fixed(most, 2) + " K where it sees one (3 times the noise)";
+}
 
 body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
   try {
@@ -378,6 +408,17 @@ SightReport look_around(const Model& model) {
     sight.outside = hangs_outside(scene.floor, scene.sensors[i].world_from_sensor.origin);
     count_rays(model, i, sight);
   }
+  for (std::size_t i = 0; i < scene.arrays.size(); ++i) {
+    SensorSight& sight = report.sensors.emplace_back();
+    sight.sensor = scene.arrays[i].id;
+    sight.outside = hangs_outside(scene.floor, scene.arrays[i].world_from_sensor.origin);
+    const RayBundle& rays = model.compiled().arrays()[i]->power().clipped();
+    sight.rays = rays.rays.size();
+    for (const float range : rays.range) {
+      sight.rays_cut += range < pir::out_of_sight_m ? 1 : 0;
+      sight.longest_m = std::max(sight.longest_m, static_cast<double>(range));
+    }
+  }
   const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
   for (double z = lower.y + report.spacing_m / 2; z < upper.y; z += report.spacing_m) {
     for (double x = lower.x + report.spacing_m / 2; x < upper.x; x += report.spacing_m) {
@@ -402,6 +443,8 @@ SightReport look_around(const Model& model) {
       if (seen[i]) report.sensors[i].seats.push_back(seat.id);
     }
   }
+  for (std::size_t i = 0; i < scene.arrays.size(); ++i)
+    report.sensors[scene.sensors.size() + i].about = about(*model.compiled().arrays()[i], onlooker.contrasts_k()[i]);
   return report;
 }
 
@@ -419,6 +462,10 @@ std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
   if (is_told_of_unit(scene)) return {};
   GroupedWarnings blind;
   for (const SensorSight& sight : report.sensors) {
+    const auto sensor = std::ranges::find(scene.sensors, sight.sensor, &SensorSpec::id);
+    const bool is_beam =  // which crosses a door, not the floor
+        sensor != scene.sensors.end() && scene.sensor_models.at(sensor->model).response == Response::beam;
+    if (is_beam) continue;
     if (sight.sees_nothing()) {
       note_blind(sight, scene.name, blind);
     } else if (static_cast<double>(sight.area_seen) < least_of_area * static_cast<double>(sight.area_places)) {

@@ -111,7 +111,9 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
   io::MapChart chart =
       map_with(study, map, [&](std::size_t column, std::size_t row) { return map.count(column, row, sensor); });
   chart.title = map.sensors[sensor];
-  chart.markers = {marker_of(study.scene().sensors[sensor])};
+  const std::size_t n_sensors = study.scene().sensors.size();
+  chart.markers = {
+      marker_of(sensor < n_sensors ? study.scene().sensors[sensor] : study.scene().arrays[sensor - n_sensors])};
   return chart;
 }
 

@@ -18,6 +18,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "engine/sim/observer.hpp"
 #include "engine/sim/run_state.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
@@ -346,6 +347,50 @@ void hours_per_second() {
   }
 }
 
+/// What a thermal array costs beside a wall PIR at equal frame rates: a frame a tick, people who never do the same
+/// twice.
+void arrays() {
+  const SceneSpec room = shipped_scene("meeting_room.gltf");
+  const auto scene_with = [&](const std::string& model, int rays_per_pixel) {
+    SceneSpec scene = room;
+    scene.sensors.resize(model.empty() ? 1 : 0);
+    if (model.empty() || model == "nothing") return scene;
+    scene.sensor_models[model] = io::read_sensor_model(test::data("sensors/" + model + ".yaml"));
+    scene.sensor_models[model].array->rays_per_pixel = rays_per_pixel;
+    scene.arrays = {{"A1", model, {glm::angleAxis(radians(-90.0), Vec3(1, 0, 0)), Vec3(3.5, 2.6, -2.0)}}};
+    return scene;
+  };
+  const std::vector<std::pair<std::string, SceneSpec>> cases{{"no sensor", scene_with("nothing", 0)},
+                                                             {"a wall PIR, analog", scene_with("", 0)},
+                                                             {"8 x 8", scene_with("AMG8833", 24)},
+                                                             {"32 x 24", scene_with("MLX90640-BAA", 8)}};
+  for (const std::size_t n_people : {1U, 3U}) {
+    std::map<std::string, double> ns;
+    for (int round = 0; round < 5; ++round) {
+      for (const auto& [what, scene] : cases) {
+        ScriptSpec script = full_room(n_people, MotionStyle::natural, Response::analog);
+        script.sensing.frame_rate_hz = script.sensing.tick_rate_hz;
+        Office office(scene, script);
+        std::vector<sim::Camera> cameras;
+        for (const auto& array : office.model.compiled().arrays()) cameras.emplace_back(*array, fastest_tracer, 0);
+        constexpr int n_ticks = 4000;
+        const Stopwatch stopwatch;
+        for (int i = 0; i < n_ticks; ++i) {
+          step_tick(office.model, office.state);
+          for (sim::Camera& camera : cameras) camera.look(office.state.run_state());
+        }
+        const double now = stopwatch.seconds() / n_ticks * 1e9;
+        ns[what] = round == 0 ? now : std::min(ns[what], now);
+      }
+    }
+    const std::string people = std::to_string(n_people) + " at work, ";
+    for (const auto& [what, value] : ns) {
+      report("arrays", people + what, value, "ns a tick");
+      report("arrays", people + what + ", in wall PIRs", value / ns["a wall PIR, analog"], "1");
+    }
+  }
+}
+
 /// Seconds of wall clock until every one of some independent ensembles of 300 runs is done.
 double seconds_of_ensembles(const std::vector<std::string>& overrides, unsigned n_ensembles, unsigned threads_each) {
   const auto begin = Clock::now();
@@ -478,7 +523,7 @@ int main(int argc, char** argv) {
        {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
         Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
         Section{"hours", hours_per_second}, Section{"realizations", realizations}, Section{"ticks", ticks_by_phase},
-        Section{"responses", responses}, Section{"runs", runs_per_second}}) {
+        Section{"responses", responses}, Section{"arrays", arrays}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

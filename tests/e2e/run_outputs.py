@@ -22,6 +22,7 @@ DATASET = ("README.md", "datapackage.json", "provenance.txt", "rooms.csv", "sens
            "pictures/room_0001.png")
 TABLE = "table.journal", "realizations_0001.bin", "injected/table.journal"
 CONTENTS = {("coverage", "--output"): ("coverage.csv",), ("dataset", "--output"): DATASET,
+            ("", "--frames"): ("A1_1_1.npy",), ("run", "--frames"): ("A1_1_1.npy",), ("day", "--frames"): ("A1_1_1.npy",),
             ("calibrate", "--output"): ("recipe.yaml", "weights.csv", "counter.json", "calibration.json",
                                         "calibration.html", "pool/rows/room_0001/day_01.csv"),
             ("reconcile", "--output"): REPORT, ("reconcile plan", "--output"): ("plan.csv", "plan.html", "plan.json", "table/table.journal"),

@@ -55,7 +55,7 @@ Activity = {activity}
 OF_ITS_OWN = ["Diagnostic", "Floor", "Frame", "Mesh", "Point2", "Point3", "Activity", "Action"]
 NOT_PRINTED = {("Cluster", "zones"), ("Person", "body_meshes")}
 UNITS = {"_m_s": "m/s", "_m": "m", "_s": "s", "_k": "K", "_hz": "Hz", "_v": "V", "_v_pp": "V", "_deg": "deg",
-         "_c": "deg C", "_mm": "mm", "_mm2": "mm²", "deg_per_s": "deg/s", "_min": "min", "volts_per_watt": "V/W"}
+         "_c": "deg C", "_mm": "mm", "_um": "um", "_mm2": "mm²", "deg_per_s": "deg/s", "_min": "min", "volts_per_watt": "V/W"}
 
 
 def description(compiler):

@@ -204,13 +204,30 @@ class BlurredZone {
   const ZoneSpec& zone_;
 };
 
-/// Point i of n of a rank-1 lattice.
+constexpr double coldest_c = -80.0, warmest_c = 350.0, thermometer_step_k = 0.25;
+
+}  // namespace
+
+Thermometer::Thermometer(const Band& band) {
+  for (int i = 0; i <= (warmest_c - coldest_c) / thermometer_step_k; ++i)
+    log_radiances_.push_back(std::log(band_radiance(kelvin(coldest_c + i * thermometer_step_k), band)));
+}
+
+double Thermometer::celsius(double radiance) const noexcept {
+  if (!(radiance > 0.0)) return coldest_c;
+  const double wanted = std::log(radiance);
+  const auto above = std::ranges::upper_bound(log_radiances_, wanted);
+  if (above == log_radiances_.begin()) return coldest_c;
+  if (above == log_radiances_.end()) return warmest_c;
+  const double below = *(above - 1);
+  return coldest_c + thermometer_step_k * (static_cast<double>(above - 1 - log_radiances_.begin()) +
+                                           (wanted - below) / (*above - below));
+}
+
 Vec2 lattice_point(int i, int n) {
   double ignored = 0.0;
   return {(i + 0.5) / n, std::modf((i + 0.5) * std::numbers::phi, &ignored)};
 }
-
-}  // namespace
 
 double band_radiance(double temperature_k, const Band& band) {
   if (temperature_k <= 0.0) return 0.0;

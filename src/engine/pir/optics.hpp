@@ -17,12 +17,24 @@ namespace pirsim::pir {
 struct Band {
   double from_um = 5.0;
   double to_um = 14.0;
+  bool operator==(const Band&) const = default;
 };
 
 [[nodiscard]] constexpr double kelvin(double celsius) noexcept { return celsius + 273.15; }
 
 /// Of a black body, W m^-2 sr^-1; monotonic in the temperature, 0 at 0 K. Ref: [Planck1914], constants [CODATA2018].
 [[nodiscard]] double band_radiance(double temperature_k, const Band& band = {});
+
+/// Which temperature has a black body of a band radiance, degrees Celsius: the inverse, to 1e-4 K. Less than -80 or
+/// more than 350 is told as these.
+class Thermometer {
+ public:
+  explicit Thermometer(const Band& band);
+  [[nodiscard]] double celsius(double radiance) const noexcept;
+
+ private:
+  std::vector<double> log_radiances_;  ///< at evenly spaced temperatures
+};
 
 // A sensor's lens as rays: for hard zones, and with weights for radiant power.
 
@@ -53,6 +65,8 @@ struct WeightedDirection {
 /// Of the zone's outline as drawn, steradian. Ref: [VanOosterom1983].
 [[nodiscard]] double solid_angle_sr(const SensorModelSpec& model, const ZoneSpec& zone);
 
+/// Point i of n of a rank-1 lattice of the golden ratio, in the unit square.
+[[nodiscard]] Vec2 lattice_point(int i, int n);
 /// For each zone, one after the other, `n` >= 1 directions spread evenly (a rank-1 lattice of the golden ratio) over
 /// the zone as the lens' point spread blurs it: where the zone is half as sensitive they lie half as dense. Their
 /// weights sum to the zone's solid angle.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "engine/pir/calibration.hpp"
 #include "engine/pir/optics.hpp"
 #include "engine/sim/plan_people.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "model/schema/fields.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/error.hpp"
@@ -145,7 +147,14 @@ RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, cons
   RayBundle rays;
   const std::vector<double> levels = pir::edge_levels(sensing.soft_edges.sigma_deg);
   for (const SensorSpec& sensor : scene.sensors) {
-    pir::append(rays, sensor, scene.sensor_models.at(sensor.model), sensing.rays_per_zone, levels);
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
+    const std::size_t first = rays.rays.size();
+    pir::append(rays, sensor, model, sensing.rays_per_zone, levels);
+    if (model.response != Response::beam) continue;
+    for (std::size_t i = first; i < rays.rays.size(); ++i) {  // what is broken is nearer than the room
+      const auto idle = room.first_hit(rays.rays[i], rays.range[i]);
+      if (idle) rays.range[i] = idle->distance * static_cast<float>(model.idle_share);
+    }
   }
   for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays, scene, field);
   add_reflections(rays, room, scene.meshes, sensing.reflections);
@@ -176,7 +185,7 @@ const PowerModel::Lens& PowerModel::lens(const SensorModelSpec& model, const Sen
 
 PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
                        const PowerModel* like)
-    : rays_(std::make_unique<pir::PowerRays>()) {
+    : ambient_c_(sensing.ambient_c), rays_(std::make_unique<pir::PowerRays>()) {
   const RayBundle& bundle = rays_->bundle;
   for (const SensorSpec& sensor : scene.sensors) {
     if (response_of(scene, sensing, sensor) != Response::analog) {
@@ -196,11 +205,25 @@ PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, co
     receivers_begin_.push_back(receivers_begin_.back() + static_cast<std::uint32_t>(steps.size()));
   }
   for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays_->bundle, scene, field);
+  look_behind(scene, sensing, room);
+}
+
+PowerModel::PowerModel(pir::PowerRays rays, const pir::Band& band, const SceneSpec& scene,
+                       const SensingInForce& sensing, const rt::Room& room)
+    : band_(band), ambient_c_(sensing.ambient_c), rays_(std::make_unique<pir::PowerRays>(std::move(rays))) {
+  receivers_.resize(rays_->weights.size());
+  std::iota(receivers_.begin(), receivers_.end(), 0U);
+  receivers_begin_.push_back(static_cast<std::uint32_t>(receivers_.size()));
+  look_behind(scene, sensing, room);
+}
+
+void PowerModel::look_behind(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room) {
   clipped_ = std::make_unique<RayBundle>(rays_->bundle);
-  const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
+  const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c), band_);
   std::vector<double> mesh_radiances;
   for (const TriMesh& mesh : scene.meshes) {
-    mesh_radiances.push_back(mesh.temperature_c ? pir::band_radiance(pir::kelvin(*mesh.temperature_c)) : ambient);
+    mesh_radiances.push_back(mesh.temperature_c ? pir::band_radiance(pir::kelvin(*mesh.temperature_c), band_)
+                                                : ambient);
   }
   for (std::size_t i = 0; i < clipped_->rays.size(); ++i) {
     const auto hit = room.first_hit(clipped_->rays[i], clipped_->range[i]);
@@ -209,18 +232,23 @@ PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, co
   }
 }
 
-BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
+BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c, const pir::Band& band) {
   const auto temperatures_c = body::surface_temperatures_c(warmth, ambient_c);
   BodyRadiance radiance{};
-  for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = pir::band_radiance(pir::kelvin(temperatures_c[i]));
+  for (std::size_t i = 0; i < radiance.size(); ++i)
+    radiance[i] = pir::band_radiance(pir::kelvin(temperatures_c[i]), band);
   return radiance;
 }
 
-BodyRadiance radiance_of(const PersonInForce& body, double ambient_c) {
-  if (!body.pet) return radiance_of(body.warmth, ambient_c);
+BodyRadiance radiance_of(const PersonInForce& body, double ambient_c, const pir::Band& band) {
+  if (!body.pet) return radiance_of(body.warmth, ambient_c, band);
   BodyRadiance radiance{};
-  radiance.fill(pir::band_radiance(pir::kelvin(body::coat_c(ambient_c))));
+  radiance.fill(pir::band_radiance(pir::kelvin(body::coat_c(ambient_c)), band));
   return radiance;
+}
+
+BodyRadiance PowerModel::radiance_of(const PersonModel& person) const {
+  return band_ == pir::Band{} ? person.radiance : sim::radiance_of(person.spec, ambient_c_, band_);
 }
 
 bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) {
@@ -255,6 +283,8 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   if (sensing.dual_polarity) {
     polarity_.emplace(scene, *sensing.dual_polarity, n_levels_, 1.0 / sensing.tick_rate_hz);
   }
+  for (const SensorSpec& sensor : scene.sensors)
+    beams_.push_back(response_of(scene, sensing, sensor) == Response::beam ? 1 : 0);
   for (const SensorSpec& sensor : scene.sensors) {
     const DetectorSpec& detector = scene.sensor_models.at(sensor.model).detector;
     const bool by_zones = response_of(scene, sensing, sensor) == Response::zones;
@@ -296,6 +326,22 @@ std::vector<float> SensorArray::range(std::span<const LeafStep> steps) const {
   std::vector<float> range;
   cuts_->cut(steps, range);
   return range;
+}
+
+std::vector<std::uint32_t> SensorArray::broken_by(std::span<const LeafStep> steps) const {
+  std::vector<std::uint32_t> broken;
+  const std::vector<float> now = range(steps);
+  for (std::size_t sensor = 0; sensor < n_sensors(); ++sensor) {
+    if (!is_beam(sensor)) continue;
+    for (std::uint32_t zone = clipped_.first_zone(sensor); zone < clipped_.first_zone(sensor + 1); ++zone) {
+      for (std::uint32_t ray = clipped_.zone_rays_begin[zone]; ray < clipped_.zone_rays_begin[zone + 1]; ++ray) {
+        if (now[ray] >= clipped_.range[ray]) continue;
+        broken.push_back(zone);
+        break;
+      }
+    }
+  }
+  return broken;
 }
 
 std::unique_ptr<rt::Tracer> SensorArray::make_tracer(TracerKind kind, ZonesOf whose) const {
@@ -364,6 +410,8 @@ CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce st
                         ? like->array().shared_room()
                         : std::make_shared<const rt::Room>(scene_.meshes);
   array_ = std::make_unique<const SensorArray>(scene_, sensing_, room, like != nullptr ? &like->array() : nullptr);
+  for (std::size_t i = 0; i < scene_.arrays.size(); ++i)
+    arrays_.push_back(std::make_shared<const ThermalArray>(scene_, i, sensing_, seed_, *room, array_->leaves()));
   trials_ = like != nullptr && same_people(*like, *this, study.trials)
                 ? like->trials_
                 : std::make_shared<const std::vector<TrialModel>>(plan_people(*this, study.trials, like));

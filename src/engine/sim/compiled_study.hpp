@@ -2,6 +2,7 @@
 // of it. The compiled part.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -35,6 +36,8 @@ inline constexpr double watts_per_step = 0x1p-64;
 /// Radiance of each of a person's parts, W m^-2 sr^-1.
 using BodyRadiance = std::array<double, body::n_parts>;
 
+struct PersonModel;
+
 /// The rays of analog sensors and what they are worth: optics alone, whatever the electronics. Sensors whose response
 /// is `zones` have no rays here. Immutable.
 ///
@@ -44,7 +47,13 @@ class PowerModel {
  public:
   /// like: a model whose lenses are shared where they are the same, or null.
   PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room, const PowerModel* like);
+  /// Of rays of which each is a receiver, and of other wavelengths than a PIR sensor's.
+  PowerModel(pir::PowerRays rays, const pir::Band& band, const SceneSpec& scene, const SensingInForce& sensing,
+             const rt::Room& room);
 
+  [[nodiscard]] const pir::Band& band() const noexcept { return band_; }
+  /// Of a person's parts, in this band.
+  [[nodiscard]] BodyRadiance radiance_of(const PersonModel& person) const;
   [[nodiscard]] const pir::PowerRays& rays() const noexcept { return *rays_; }
   /// The rays cut at the room.
   [[nodiscard]] const RayBundle& clipped() const noexcept { return *clipped_; }
@@ -60,6 +69,9 @@ class PowerModel {
   }
 
  private:
+  /// Cuts the rays at the room.
+  void look_behind(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room);
+
   /// One make's rays, and what they follow from.
   struct Lens {
     SensorModelSpec model;  ///< as blurred as effects make it
@@ -69,6 +81,8 @@ class PowerModel {
   using Lenses = std::map<std::string, std::shared_ptr<const Lens>, std::less<>>;  ///< by the model's id
   [[nodiscard]] const Lens& lens(const SensorModelSpec& model, const SensingInForce& sensing, const PowerModel* like);
 
+  pir::Band band_;
+  double ambient_c_;
   Lenses lenses_;
   std::unique_ptr<pir::PowerRays> rays_;
   std::unique_ptr<RayBundle> clipped_;
@@ -77,8 +91,8 @@ class PowerModel {
   std::vector<double> backgrounds_;                ///< (n_rays)
 };
 
-[[nodiscard]] BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c);
-[[nodiscard]] BodyRadiance radiance_of(const PersonInForce& body, double ambient_c);
+[[nodiscard]] BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c, const pir::Band& band = {});
+[[nodiscard]] BodyRadiance radiance_of(const PersonInForce& body, double ambient_c, const pir::Band& band = {});
 
 /// One make of sensor, calibrated by its rated distances (pir::calibrate) through the lens as it was made: what blurs
 /// it later leaves the gain as it is.
@@ -176,6 +190,11 @@ class SensorArray {
     return analog_ && analog_->sensors()[sensor] != nullptr;
   }
 
+  [[nodiscard]] bool is_beam(std::size_t sensor) const noexcept { return beams_[sensor] != 0; }
+  [[nodiscard]] bool has_beams() const noexcept { return std::ranges::find(beams_, std::uint8_t{1}) != beams_.end(); }
+  /// Zones of beams that leaves break.
+  [[nodiscard]] std::vector<std::uint32_t> broken_by(std::span<const LeafStep> steps) const;
+
   /// (n_doors) whose leaves hide what is behind them.
   [[nodiscard]] const std::vector<DoorLeaf>& leaves() const noexcept { return leaves_; }
   /// How far the rays go, of all sensors, while leaves stand so. steps: (n_doors).
@@ -201,6 +220,7 @@ class SensorArray {
   std::size_t n_levels_;
   int ticks_per_window_;
   RayBundle rated_, clipped_;
+  std::vector<std::uint8_t> beams_;  ///< (n_sensors) 1: answers as a beam does
   std::vector<DoorLeaf> leaves_;
   std::optional<rt::LeafCuts> cuts_;  ///< of clipped_; none without doors, as below
   /// Without the rays of analog sensors; only if there are analog sensors and others.
@@ -278,6 +298,8 @@ struct PersonModel {
 
 using TrialModel = TrialOf<PersonModel>;
 
+class ThermalArray;
+
 class CompiledStudy {
  public:
   /// What is the same in `like` is shared instead of made anew, which changes nothing but the time it takes. Throws as
@@ -298,6 +320,8 @@ class CompiledStudy {
   /// Do people do the same in every run that both have? True only if one was compiled like the other.
   [[nodiscard]] bool moves_people_as(const CompiledStudy& other) const noexcept { return trials_ == other.trials_; }
   [[nodiscard]] const SensorArray& array() const noexcept { return *array_; }
+  /// (n_arrays) the scene's thermopile arrays.
+  [[nodiscard]] const std::vector<std::shared_ptr<const ThermalArray>>& arrays() const noexcept { return arrays_; }
   [[nodiscard]] TracerKind tracer() const noexcept { return tracer_; }
   /// What the effects do to triggers and rows, before any run.
   [[nodiscard]] const effects::Pipeline& stages() const noexcept { return stages_; }
@@ -325,6 +349,7 @@ class CompiledStudy {
   std::uint64_t seed_;
   TracerKind tracer_;
   std::unique_ptr<const SensorArray> array_;
+  std::vector<std::shared_ptr<const ThermalArray>> arrays_;
   effects::Pipeline stages_;
   std::shared_ptr<const std::vector<TrialModel>> trials_;
 };

@@ -155,9 +155,12 @@ void PostureIndex::forget_all() noexcept {
 }
 
 PowerMeter::PowerMeter(const SensorArray& array, TracerKind kind)
-    : power_(array.analog()->power()),
-      tracer_(array.make_power_tracer(kind)),
-      alone_(power_.n_receivers(), tracer_->may_be_remembered() ? most_postures : 0),
+    : PowerMeter(array.analog()->power(), array.make_power_tracer(kind), most_postures) {}
+
+PowerMeter::PowerMeter(const PowerModel& power, std::unique_ptr<rt::Tracer> tracer, std::size_t n_remembered)
+    : power_(power),
+      tracer_(std::move(tracer)),
+      alone_(power_.n_receivers(), tracer_->may_be_remembered() ? n_remembered : 0),
       powers_(power_.n_receivers(), 0) {}
 
 std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept {
@@ -251,7 +254,10 @@ void PowerMeter::follow(const std::vector<Actor>& actors) {
     const body::Outline outline = actors[i].motion().outline();
     const bool is_new = !figure.is_there;
     if (!is_new && tracer_->may_be_remembered() && is_same(outline, figure.outline)) continue;
-    if (is_new) figure = {true, &person.humanoid, body::n_parts, person.radiance, surfaces_of(person.radiance), {}};
+    if (is_new) {
+      const BodyRadiance radiance = power_.radiance_of(person);
+      figure = {true, &person.humanoid, body::n_parts, radiance, surfaces_of(radiance), {}};
+    }
     figure.outline = outline;
     moved_.push_back({i, mannequins_[i].pose(person.humanoid, outline), figure.surfaces});
   }
@@ -285,9 +291,14 @@ void Observer::look(const std::vector<Actor>& actors, std::span<const LeafStep> 
 }
 
 void Observer::look_at_zones(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure) {
-  if (leaves_.turn(leaves)) tracer_->turn_leaves(leaves);
+  if (leaves_.turn(leaves)) {
+    tracer_->turn_leaves(leaves);
+    if (array_.has_beams()) broken_ = array_.broken_by(leaves);
+  }
   exposure.zones.clear();
+  for (const std::uint32_t zone : broken_) exposure.zones.insert(zone);
   exposure.channels.clear();
+  if (!broken_.empty()) array_.channels().add_channels(exposure.zones, exposure.channels);
   memory_.make_room_for(actors.size());
   if (mannequins_.size() < actors.size()) mannequins_.resize(actors.size());
   const std::size_t n_zone_words = exposure.zones.words().size();

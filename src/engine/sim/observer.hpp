@@ -184,6 +184,8 @@ struct PowerShare {
 class PowerMeter {
  public:
   PowerMeter(const SensorArray& array, TracerKind kind);
+  /// tracer: of these rays; n_remembered: postures of somebody alone.
+  PowerMeter(const PowerModel& power, std::unique_ptr<rt::Tracer> tracer, std::size_t n_remembered);
   /// leaves: (n_doors) as they stand; powers: (n_receivers) overwritten.
   void measure(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::span<PowerSteps> powers);
   /// The same of one body alone, with leaves as before a run. solids: at most n_parts, as warm as the parts in their
@@ -247,6 +249,7 @@ class Observer {
   const SensorArray& array_;
   std::unique_ptr<rt::Tracer> tracer_;  ///< null: no zones are wanted
   LeafNumbers leaves_;
+  std::vector<std::uint32_t> broken_;  ///< zones of beams, by leaves as they stand
   PostureMemory<ZoneSet::Part> memory_;
   std::unique_ptr<PowerMeter> power_meter_;  ///< null: no sensor is analog
   // Scratch.

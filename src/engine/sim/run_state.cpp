@@ -45,6 +45,7 @@ void Detector::tick_zones(const Exposure& before, const Exposure& after, std::sp
     edges_.tick(before.channels, after.channels, triggers);
   }
   switch_outputs(triggers);
+  if (array_->has_beams()) look_at_beams(after, triggers);
 }
 
 void Detector::tick_zones_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
@@ -55,6 +56,7 @@ void Detector::tick_zones_unchanged(const Exposure& exposure, std::span<std::uin
     edges_.tick_unchanged(exposure.channels, triggers);
   }
   switch_outputs(triggers);
+  if (array_->has_beams()) look_at_beams(exposure, triggers);
 }
 
 void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {
@@ -62,6 +64,17 @@ void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {
     if (!outputs_[i]) continue;
     array_->zone_outputs()[i]->advance_to(*outputs_[i], triggers[i] != 0 ? 1 : 0);
     triggers[i] = outputs_[i]->on ? 1 : 0;
+  }
+}
+
+void Detector::look_at_beams(const Exposure& exposure, std::span<std::uint8_t> triggers) const noexcept {
+  const std::span<const ZoneSet::Word> channels = exposure.channels.words();
+  for (std::size_t i = 0; i < triggers.size(); ++i) {
+    if (!array_->is_beam(i)) continue;
+    const auto own = array_->channels().sensor_masks().subspan(i * channels.size(), channels.size());
+    bool is_broken = false;
+    for (std::size_t k = 0; k < own.size(); ++k) is_broken = is_broken || (own[k] & channels[k]) != 0;
+    triggers[i] = is_broken ? 1 : 0;
   }
 }
 
@@ -75,7 +88,7 @@ void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> 
 }
 
 bool Detector::is_at_rest(const Exposure& exposure) const {
-  if (is_memoryless()) return true;
+  if (is_memoryless() && !array_->has_beams()) return true;
   if (!polarity_ && !edges_.is_at_rest()) return false;
   Detector next(*this);
   std::vector<std::uint8_t> triggers(array_->n_sensors());

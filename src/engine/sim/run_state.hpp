@@ -51,6 +51,8 @@ class Detector {
   /// triggers: (n_sensors) changes of zones; set to 1 where the output behind them is on.
   void switch_outputs(std::span<std::uint8_t> triggers) noexcept;
   void advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
+  /// Sets those of beams: 1 while one of their zones is broken.
+  void look_at_beams(const Exposure& exposure, std::span<std::uint8_t> triggers) const noexcept;
 
   const SensorArray* array_;
   pir::SoftEdges edges_;

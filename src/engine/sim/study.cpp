@@ -11,6 +11,7 @@
 #include "engine/sim/compiled_study.hpp"
 #include "engine/sim/observer.hpp"
 #include "engine/sim/run_state.hpp"
+#include "engine/sim/thermal_array.hpp"
 #include "model/core/parallel.hpp"
 #include "pirsim/columns.hpp"
 #include "pirsim/error.hpp"
@@ -134,7 +135,7 @@ sim::ZonesOf zones_for(Record record) {
 }
 
 RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study, std::uint32_t run, Record record,
-                   Trace trace, Occupants occupants, const std::function<void()>& window_done = {}) {
+                   Trace trace, Occupants occupants, Frames frames, const std::function<void()>& window_done = {}) {
   RunResult result;
   result.run = run;
   result.replicate = study.replicate_of(run);
@@ -144,11 +145,19 @@ RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
   if (explainer) explainer->settle(state);
+  std::vector<sim::Camera> cameras;
+  const auto take_frames = [&] {
+    for (sim::Camera& camera : cameras) camera.look(state);
+  };
+  for (std::size_t i = 0; frames == Frames::taken && i < study.arrays().size(); ++i)
+    cameras.emplace_back(*study.arrays()[i], study.tracer(), run);
+  take_frames();
   // Zones and signals are recorded at every tick, so no window may be passed over.
   const bool may_pass = record == Record::samples && !explainer;
   try {
     while (!state.finished) {
       if (may_pass && sim::pass_empty_window(study, state)) {
+        take_frames();
         result.samples.push_back(state.sample);
         if (window_done) window_done();
         continue;
@@ -156,6 +165,7 @@ RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study
       const bool window_ended = sim::step_tick(study, state);
       if (record == Record::samples_and_zones) result.zones.push_back(state.exposure().zones);
       if (explainer) explainer->explain(state, result.trace);
+      take_frames();
       if (window_ended) result.samples.push_back(state.sample);
       if (window_ended && occupants == Occupants::told) add_occupants(study, state, result.occupants);
       note_incidents(study, state, result.incidents);
@@ -167,16 +177,19 @@ RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study
     result.zones.clear();
     result.trace.clear();
     result.occupants.clear();
+    cameras.clear();
     result.fault = {static_cast<double>(state.tick) * study.tick_s(), error.issues().front().message};
   }
+  for (sim::Camera& camera : cameras) result.frames.push_back(std::move(camera.frames()));
   return result;
 }
 
 }  // namespace
 
-RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace, Occupants occupants) {
+RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace, Occupants occupants,
+                   Frames frames) {
   sim::ObserverPool observers(model.compiled(), zones_for(record));
-  return run_with(observers, model.compiled(), run, record, trace, occupants);
+  return run_with(observers, model.compiled(), run, record, trace, occupants, frames);
 }
 
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
@@ -189,7 +202,7 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
       options.chosen ? options.chosen->size() : range.count(), options.threads,
       [&](std::size_t i) {
         return run_with(observers, model.compiled(), run_of(i), options.record, options.trace, options.occupants,
-                        options.window_done);
+                        options.frames, options.window_done);
       },
       [&](RunResult& result) { consume(result); }, options.goes_on);
 }

@@ -53,6 +53,7 @@ class SceneBuilder {
       remarks_.warning(document_.text.where(""), "the scene has no sensors");
     }
     read_sensor_models();
+    if (!remarks_.has_errors()) move_arrays(spec_);
     warnings_.tell(remarks_);
     remarks_.throw_if_errors();
     spec_.warnings = remarks_.warnings();

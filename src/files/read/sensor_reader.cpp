@@ -305,6 +305,8 @@ const std::vector<std::string>& sourced_keys() {
                                  "pitch_m",
                                  "missing",
                                  "corners_m"};
+    all.emplace_back("idle_share");
+    add_keys<ArraySpec>(all);
     add_keys<DomeSpec>(all);
     add_keys<OpticsSpec>(all);
     add_keys<SensitivitySpec>(all);
@@ -437,14 +439,51 @@ bool misspells_range(const YamlNode& root) {
   });
 }
 
+enum class Kind { pir, array, beam };
+
+void read_array(YamlMap& map, SensorModelSpec& model) {
+  model.names = map.texts("names");
+  for (const char* key : {"rows", "columns", "wide_deg", "tall_deg", "rate_hz", "netd_k"}) map.require(key);
+  ArraySpec& array = model.array.emplace();
+  read_fields(map, array);
+  check_together(array, faults_of(map, "array"));
+}
+
+/// A beam's zones are its own; nothing of a PIR sensor's electronics is behind them.
+void check_kind(YamlMap& map, Kind kind) {
+  if (kind == Kind::pir && map.has("idle_share"))
+    map.faults().error(map.where("idle_share"), "sensor: 'idle_share' is of kind: beam");
+  if (kind != Kind::beam) return;
+  for (const char* key :
+       {"response", "targets", "sensitivity", "optics", "element", "amplifier", "comparator", "report"}) {
+    if (map.has(key))
+      map.faults().error(map.where(key), "sensor: '" + std::string(key) + "' is of PIR sensors, and this is a beam");
+  }
+}
+
 SensorModelSpec read_model(const YamlNode& root) {
   Diagnostics faults;
   YamlMap map(root, faults, "sensor");
   SensorModelSpec model;
   model.id = map.required_text("id");
   model.description = map.prose("description");
+  const Kind kind =
+      map.choice<Kind>("kind", Kind::pir, {{"pir", Kind::pir}, {"array", Kind::array}, {"beam", Kind::beam}});
+  if (kind == Kind::array) {
+    read_array(map, model);
+    check_sources(map, root);
+    map.finish();
+    faults.throw_if_errors();
+    return model;
+  }
+  check_kind(map, kind);
   if (!map.has("dome")) map.require("plane_m");
   read_fields(map, model);
+  if (kind == Kind::beam) {
+    model.response = Response::beam;
+  } else if (model.response == Response::beam) {
+    faults.error(map.where("response"), "sensor: response: expected zones or analog; a beam says kind: beam");
+  }
   std::optional<double> range_m =  // of all facets or clusters that don't say their own
       map.optional_number("range_m", field_of<&ClusterSpec::range_m>().range);
   if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key

@@ -443,6 +443,7 @@ GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
   for (const EntranceSpec& door : scene.entrances) add_mark(document, "entrance", door, door.world_from_entrance);
   for (const DoorSpec& door : scene.doors) add_mark(document, "door", door, door.world_from_door);
   for (const SensorSpec& sensor : scene.sensors) add_mark(document, "sensor", sensor, sensor.world_from_sensor);
+  for (const SensorSpec& array : scene.arrays) add_mark(document, "sensor", array, array.world_from_sensor);
   for (const SeatSpec& seat : scene.seats) add_mark(document, "seat", seat, seat.world_from_seat);
   for (const PlaceSpec& place : scene.places) add_mark(document, "place", place, place.world_from_place);
   return document;

@@ -132,6 +132,7 @@ class SceneCheck {
   void run() {
     const SpecPath path("scene");
     if (!faults_.few(path.field("sensors"), scene_.sensors.size(), limits::sensors) ||
+        !faults_.few(path.field("arrays"), scene_.arrays.size(), limits::arrays) ||
         !faults_.few(path.field("seats"), scene_.seats.size(), limits::seats) ||
         !faults_.few(path.field("places"), scene_.places.size(), limits::places) ||
         !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances) ||
@@ -141,7 +142,10 @@ class SceneCheck {
     }
     check_meshes(path);
     Names sensors("sensor"), seats("seat"), entrances("entrance");
-    for (std::size_t i = 0; i < scene_.sensors.size(); ++i) check_sensor(path.item("sensors", i), i, sensors);
+    for (std::size_t i = 0; i < scene_.sensors.size(); ++i)
+      check_sensor(path.item("sensors", i), scene_.sensors[i], Frames::none, sensors);
+    for (std::size_t i = 0; i < scene_.arrays.size(); ++i)
+      check_sensor(path.item("arrays", i), scene_.arrays[i], Frames::given, sensors);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) {
       const SpecPath seat = path.item("seats", i);
       check_id(scene_.seats[i].id, seat, seats);
@@ -219,14 +223,21 @@ class SceneCheck {
     for (std::size_t i = 0; i < uses.size(); ++i) faults_.error_if(path.item("uses", i), use_fault(uses[i]));
   }
 
-  void check_sensor(const SpecPath& path, std::size_t index, Names& ids) {
-    const SensorSpec& sensor = scene_.sensors[index];
+  enum class Frames { none, given };
+  void check_sensor(const SpecPath& path, const SensorSpec& sensor, Frames frames, Names& ids) {
     check_id(sensor.id, path, ids);
     faults_.error_if(path.field("id"), column_fault(sensor.id));
     static_cast<void>(check_frame(sensor.world_from_sensor, path.field("world_from_sensor")));
     faults_.fields(sensor, path);
     faults_.error_if(path.field("area"), area_fault(sensor, scene_.areas));
-    if (scene_.sensor_models.contains(sensor.model)) return;
+    if (const auto model = scene_.sensor_models.find(sensor.model); model != scene_.sensor_models.end()) {
+      if (model->second.array.has_value() != (frames == Frames::given)) {
+        faults_.error(path.field("model"), "'" + sensor.model + "' is " + (model->second.array ? "an" : "no") +
+                                               " array: it belongs into scene." +
+                                               (model->second.array ? "arrays" : "sensors"));
+      }
+      return;
+    }
     std::vector<std::string> names;
     for (const auto& [name, model] : scene_.sensor_models) names.push_back(name);
     faults_.error(path.field("model"), "there is no sensor model '" + sensor.model + "' in scene.sensor_models" +
@@ -616,6 +627,25 @@ void check_together(const DetectorSpec& detector, const TellFault& tell) {
   }
 }
 
+void move_arrays(SceneSpec& scene) {
+  const auto first = std::stable_partition(scene.sensors.begin(), scene.sensors.end(), [&](const SensorSpec& sensor) {
+    return !scene.sensor_models.at(sensor.model).array;
+  });
+  std::move(first, scene.sensors.end(), std::back_inserter(scene.arrays));
+  scene.sensors.erase(first, scene.sensors.end());
+}
+
+void refuse_arrays(const SceneSpec& scene, const std::string& who) {
+  if (scene.arrays.empty()) return;
+  throw Error(ErrorCode::input, Where{scene.name},
+              who + " works on rows of motion, which a thermal array doesn't give: leave out '" +
+                  scene.arrays.front().id + "' (" + scene.arrays.front().model + ")");
+}
+
+void check_together(const ArraySpec& array, const TellFault& tell) {
+  if (array.to_um <= array.from_um) tell("to_um", "expected to_um above from_um");
+}
+
 void check_together(const SensorModelSpec& model, const TellFault& tell) {
   std::set<int> known, told;
   for (const ClusterSpec& cluster : model.clusters) known.insert(cluster.lens_step);
@@ -645,6 +675,10 @@ std::string corners_fault(const ZoneSpec& zone) {
 void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& faults) {
   if (model.id.empty()) faults.error(path.field("id"), "expected a text that isn't empty");
   faults.fields(model, path);
+  if (model.array) {
+    faults.fields(*model.array, path.field("array"));
+    return faults.together(*model.array, path.field("array"));
+  }
   if (model.clusters.empty()) faults.error(path.field("clusters"), "expected a list that isn't empty");
   for (std::size_t i = 0; i < model.clusters.size(); ++i) check(model.clusters[i], path.item("clusters", i), faults);
   for (std::size_t i = 0; i < model.targets.size(); ++i) faults.fields(model.targets[i], path.item("targets", i));

@@ -57,6 +57,13 @@ template <typename Spec>
   return names;
 }
 
+// Thermopile arrays among the sensors.
+
+/// Takes those sensors whose models are arrays into scene.arrays. All models are known.
+void move_arrays(SceneSpec& scene);
+/// Throws Error(input) if the scene has any: "reconcile takes no thermal array, and the scene has 'A1': ...".
+void refuse_arrays(const SceneSpec& scene, const std::string& who);
+
 // Whether a scene is measured in metres.
 
 /// What its sizes say if they are hardly metres: which unit makes a plausible room of them, and of what size. Nothing

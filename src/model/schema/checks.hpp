@@ -74,6 +74,7 @@ void check_together(const AmplifierSpec& amplifier, const TellFault& tell);
 void check_together(const ComparatorSpec& comparator, const TellFault& tell);
 void check_together(const DetectorSpec& detector, const TellFault& tell);
 /// Its targets are of lens steps that it has.
+void check_together(const ArraySpec& array, const TellFault& tell);
 void check_together(const SensorModelSpec& model, const TellFault& tell);
 [[nodiscard]] std::string corners_fault(const ZoneSpec& zone);  ///< a message or none
 

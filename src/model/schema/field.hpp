@@ -241,6 +241,7 @@ inline constexpr NumberRange tilted_deg{.min = -90.0, .max = 90.0};
 inline constexpr NumberRange time_constant_s{.above = 0.0, .max = 1000.0};
 inline constexpr NumberRange corner_hz{.above = 0.0, .max = 1000.0};
 inline constexpr NumberRange output_v{.min = 0.0, .max = 100.0};
+inline constexpr NumberRange array_noise_k{.min = 0.0, .max = 100.0};
 inline constexpr NumberRange threshold_v{.above = 0.0, .max = 100.0};
 inline constexpr NumberRange held_s{.min = 0.0, .max = 3600.0};
 inline constexpr NumberRange waited_s{.min = 0.0, .max = 1e6};

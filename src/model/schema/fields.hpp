@@ -310,6 +310,34 @@ struct Fields<SensitivitySpec> {
       FIELD(sd, NumberRange{.min = 0.0, .max = 2.0}, "standard deviation of the logarithm over units")};
 };
 template <>
+struct Fields<ArraySpec> {
+  using S = ArraySpec;
+  static constexpr const char* name = "Array";
+  static constexpr const char* about = "A thermopile array: what each pixel sees, as a temperature.";
+  static constexpr std::tuple all{
+      FIELD(rows, IntegerRange{.min = 1, .max = 480}, "of pixels"),
+      FIELD(columns, IntegerRange{.min = 1, .max = 640}, "of pixels"),
+      FIELD(wide_deg, NumberRange{.above = 0.0, .max = 150.0}, "field of view from the left edge to the right"),
+      FIELD(tall_deg, NumberRange{.above = 0.0, .max = 150.0}, "from the upper edge to the lower"),
+      FIELD(pixel_deg, NumberRange{.above = 0.0, .max = 90.0},
+            "full width at half of a pixel's Gaussian response; by default as far as from pixel to pixel"),
+      FIELD(rate_hz, NumberRange{.above = 0.0, .max = 1000.0}, "frames a second; with two sub-pages, sub-pages"),
+      FIELD(sub_pages, IntegerRange{.min = 1, .max = 2},
+            "2: each frame renews every other pixel, as the squares of a chess board"),
+      FIELD(netd_k, accepted::array_noise_k, "noise of one pixel at 1 frame/s, rms; it grows as the root of the rate"),
+      FIELD(centre_noise, NumberRange{.min = 0.0, .max = 100.0}, "times that, in the middle"),
+      FIELD(corner_noise, NumberRange{.min = 0.0, .max = 100.0}, "times that, in a corner"),
+      FIELD(common_k, accepted::array_noise_k, "noise at 1 frame/s, rms, that all pixels of one frame have in common"),
+      FIELD(offset_k, accepted::array_noise_k, "rms over units of what all pixels are off"),
+      FIELD(column_k, accepted::array_noise_k, "rms of what the pixels of one column are always off"),
+      FIELD(fixed_k, accepted::array_noise_k, "rms of what one pixel is always off"),
+      FIELD(dead_pixels, IntegerRange{.min = 0, .max = 100}, "of a unit; they read nothing"),
+      FIELD(step_k, accepted::array_noise_k, "readings are multiples of it; 0: any number"),
+      FIELD(from_um, NumberRange{.min = 1.0, .max = 50.0}, "shortest wavelength that the window lets through"),
+      FIELD(to_um, NumberRange{.min = 1.0, .max = 50.0}, "longest one"),
+      FIELD(rays_per_pixel, IntegerRange{.min = 1, .max = 10000}, "all pixels share the rays of the whole field")};
+};
+template <>
 struct Fields<SensorModelSpec> {
   using S = SensorModelSpec;
   static constexpr const char* name = "SensorModel";
@@ -320,8 +348,12 @@ struct Fields<SensorModelSpec> {
       FIELD(plane_m, NumberRange{.min = 1e-3, .max = 1000.0}, "distance of the plane on which the zones are drawn"),
       FIELD(clusters), FIELD(targets, "of lens steps whose rated target isn't the usual one"),
       FIELD(sensitivity, "of units, relative to what is guaranteed"),
-      FIELD(response, "`zones`: a change of activity is motion; `analog`: the physical response"),
-      FIELD(optics, "for the physical response"), FIELD(detector, "electronics, for the physical response")};
+      FIELD(response,
+            "`zones`: a change of activity is motion; `analog`: the physical response; `beam`: a light barrier"),
+      FIELD(optics, "for the physical response"), FIELD(detector, "electronics, for the physical response"),
+      FIELD(idle_share, NumberRange{.above = 0.0, .max = 1.0},
+            "of a beam: what is nearer than this share of the distance to the room breaks it"),
+      FIELD(array, "it is a thermopile array, which `Scene.arrays` name")};
 };
 
 // Fields of scenes (schema/fields.hpp).
@@ -418,6 +450,7 @@ struct Fields<SceneSpec> {
                                   FIELD(floor),
                                   FIELD(areas, "apart from each other, in the order of the output's columns"),
                                   FIELD(sensor_models, "every model that a sensor names"),
+                                  FIELD(arrays, "sensors that give frames instead of a column"),
                                   LABEL(files, "all that was read"),
                                   LABEL(warnings)};
 };
@@ -461,12 +494,13 @@ struct Fields<SensingSpec> {
       FIELD(rays_per_zone),
       FIELD(change_per, "whose change of activity is motion"),
       FIELD(reader, "when in a window each sensor is asked"),
-      FIELD(response, "of all sensors; none: each its own"),
+      FIELD(response, std::array{Response::zones, Response::analog}, "of all sensors but beams; none: each its own"),
       FIELD(units,
             "how sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or "
             "each `drawn`"),
       FIELD(ambient_c, accepted::skin_c, "of surfaces and of the air, where the scene says nothing else"),
-      FIELD(analog_rays_per_zone, IntegerRange{.min = 1, .max = 10000}, "in the physical response")};
+      FIELD(analog_rays_per_zone, IntegerRange{.min = 1, .max = 10000}, "in the physical response"),
+      FIELD(frame_rate_hz, NumberRange{.above = 0.0, .max = 1000.0}, "of all arrays; none: each its own")};
 };
 template <>
 struct Fields<SummarySpec> {
@@ -835,11 +869,11 @@ namespace pirsim {
 using SpecsOfPython =
     std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, OpticsSpec, ElementSpec,
                AmplifierSpec, ComparatorSpec, ReportSpec, DetectorSpec, ZoneSpec, ClusterSpec, RatedTargetSpec,
-               SensitivitySpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait, action::Appear, action::Enter,
-               action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn, action::Follow,
-               action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
-               HeldMeetingSpec, MeetingsSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec, CountsSpec,
-               StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, PetSpec, TrialSpec, SensingSpec,
-               SummarySpec, EffectSpec, ScriptSpec>;
+               SensitivitySpec, ArraySpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait, action::Appear,
+               action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn,
+               action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec,
+               StaffSpec, HeldMeetingSpec, MeetingsSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, AreaCountsSpec,
+               CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, PetSpec, TrialSpec,
+               SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

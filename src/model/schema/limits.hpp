@@ -26,6 +26,7 @@ inline constexpr std::size_t rooms = 100'000;
 
 // Of scenes.
 inline constexpr std::size_t sensors = 2'000;
+inline constexpr std::size_t arrays = 256;  ///< of these: thermopile arrays
 inline constexpr std::size_t seats = 5'000;
 inline constexpr std::size_t places = 5'000;  ///< to lie and to stand
 inline constexpr std::size_t entrances = 1'000;

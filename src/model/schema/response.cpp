@@ -14,7 +14,8 @@
 namespace pirsim {
 
 Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const SensorSpec& sensor) {
-  return sensing.response.value_or(scene.sensor_models.at(sensor.model).response);
+  const Response own = scene.sensor_models.at(sensor.model).response;
+  return own == Response::beam ? own : sensing.response.value_or(own);
 }
 
 double unit_sensitivity(const SceneSpec& scene, Units units, std::uint64_t seed, std::uint32_t sensor) {

@@ -45,7 +45,8 @@ struct Words<DoorState> {
 };
 template <>
 struct Words<Response> {
-  static constexpr WordList<Response, 2> all{{{"zones", Response::zones}, {"analog", Response::analog}}};
+  static constexpr WordList<Response, 3> all{
+      {{"zones", Response::zones}, {"analog", Response::analog}, {"beam", Response::beam}}};
 };
 template <>
 struct Words<PlacementAim> {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "model/schema/check_scene.hpp"
 #include "model/schema/check_script.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/error.hpp"
@@ -210,6 +211,7 @@ void require_known_presence(const ScriptSpec& script) {
 }
 
 StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script) {
+  refuse_arrays(scene, "reconcile");
   StudyFrame frame;
   for (const TrialSpec& trial : script.trials) frame.trials.push_back(trial.id);
   for (const SensorSpec& sensor : scene.sensors) frame.sensors.push_back(sensor.id);
