@@ -190,8 +190,8 @@ struct Verification {
   std::string placebo_effect;      ///< its name, in the first fold that has one
   std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
   std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
-  /// Enough to tell a family or several effects. Chosen, and not tried on others: three wrong and two right ones had
-  /// .15 and less, right names .28 and more.
+  /// Enough to tell a family, several effects or a set without doubt. Chosen on eight datasets; docs/validation.md has
+  /// what others close.
   [[nodiscard]] bool explains() const noexcept { return share_closed > 0.15; }
   bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
   bool refused = false;  ///< the plain model fails the global test on the held-out trials
