@@ -142,6 +142,8 @@ class Options(Case):
                 value = () if takes is None else (value_of(command, option),)
                 if option == "--format":
                     value += "--shard", "1/2"
+                if option == "--frame":
+                    value += "--frames", "frames"
                 if command == ("check",) and option in ("--floor", "--ignore", "--output"):
                     value += "--suggest",
                 needed = with_folder(option, rest)

@@ -421,9 +421,11 @@ std::string phrase_of(const ChoiceInfo& choice, const std::string& value) {
 }
 
 std::string list_text() {
+  std::size_t longest = 0;
+  for (const Effect* effect : catalogue()) longest = std::max(longest, effect->info.name.size());
   std::ostringstream out;
   for (const Effect* effect : catalogue()) {
-    out << std::left << std::setw(18) << effect->info.name << std::setw(13) << name(effect->info.family);
+    out << std::left << std::setw(static_cast<int>(longest) + 1) << effect->info.name << std::setw(13) << name(effect->info.family);
     const ParameterInfo& strength = effect->info.parameters.front();
     const std::string range = range_of(strength);
     out << std::setw(46)
