@@ -43,7 +43,11 @@ inline SensorModelSpec turned(SensorModelSpec model, const Turn& turn) {
 inline std::vector<std::string> shipped_lenses() {
   std::vector<std::string> ids;
   for (const auto& entry : std::filesystem::directory_iterator(data_dir() / "sensors")) {
-    if (entry.path().extension() == ".yaml") ids.push_back(entry.path().stem().string());
+    if (entry.path().extension() != ".yaml") continue;
+    std::ostringstream text;
+    text << std::ifstream(entry.path()).rdbuf();
+    const bool has_lens = text.str().find("\nkind:") == std::string::npos;  // no array, and no beam
+    if (has_lens) ids.push_back(entry.path().stem().string());
   }
   std::ranges::sort(ids);
   return ids;

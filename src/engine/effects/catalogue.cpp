@@ -425,7 +425,8 @@ std::string list_text() {
   for (const Effect* effect : catalogue()) longest = std::max(longest, effect->info.name.size());
   std::ostringstream out;
   for (const Effect* effect : catalogue()) {
-    out << std::left << std::setw(static_cast<int>(longest) + 1) << effect->info.name << std::setw(13) << name(effect->info.family);
+    out << std::left << std::setw(static_cast<int>(longest) + 1) << effect->info.name << std::setw(13)
+        << name(effect->info.family);
     const ParameterInfo& strength = effect->info.parameters.front();
     const std::string range = range_of(strength);
     out << std::setw(46)

@@ -63,19 +63,28 @@ std::string text_of(const SensorModelSpec& model) {
       }
     });
   };
-  part("optics", model.optics);
-  part("element", model.detector.element);
-  part("amplifier", model.detector.amplifier);
-  part("comparator", model.detector.comparator);
-  part("report", model.detector.report);
+  const bool is_beam = model.idle_share != SensorModelSpec{}.idle_share;  // which has no electronics
+  if (is_beam) {
+    text << "kind: beam\nidle_share: " << number(model.idle_share) << "\n";
+  } else {
+    part("optics", model.optics);
+    part("element", model.detector.element);
+    part("amplifier", model.detector.amplifier);
+    part("comparator", model.detector.comparator);
+    part("report", model.detector.report);
+  }
   text << "sources:\n";
   const auto source = [&](const std::string& key, const auto&...) { text << "  " << key << ": 'assumed: a test'\n"; };
   for (const char* key : {"plane_m", "range_m", "lens_step", "polarity", "corners_m"}) source(key);
-  each_number(model.optics, source);
-  each_number(model.detector.element, source);
-  each_number(model.detector.amplifier, source);
-  each_number(model.detector.comparator, source);
-  each_number(model.detector.report, source);
+  if (is_beam) {
+    source("idle_share");
+  } else {
+    each_number(model.optics, source);
+    each_number(model.detector.element, source);
+    each_number(model.detector.amplifier, source);
+    each_number(model.detector.comparator, source);
+    each_number(model.detector.report, source);
+  }
   text << "clusters:\n";
   for (const ClusterSpec& cluster : model.clusters) {
     text << "- range_m: " << cluster.range_m << "\n  lens_step: " << cluster.lens_step << "\n  zones:\n";
@@ -208,6 +217,9 @@ TEST_CASE("specs that both ways are to accept are accepted", "[both-ways]") {
   CHECK(refusal_to_write(plain_scene()).empty());
   CHECK(refusal_of_file(plain_scene()).empty());
   CHECK(refusal_of_file(plain_scene().sensor_models.begin()->second) == "");
+  SensorModelSpec beam = plain_scene().sensor_models.begin()->second;
+  beam.idle_share = 0.5;
+  CHECK(refusal_of_file(beam) == "");
   CHECK_FALSE(refusal_by([] {
                 return io::parse_script("pirsim_script: 1\npeople:\n  - {id: a, actions: [~]}\n", "s.yaml");
               }).empty());

@@ -172,8 +172,8 @@ TEST_CASE("with too few chairs residents eat on the sofa, and wait for the toile
   SceneSpec scene = test::shipped_scene("flat.gltf");
   std::erase_if(scene.seats,
                 [](const SeatSpec& seat) { return seat.id.starts_with("table_") && seat.id != "table_1"; });
-  const Model model = compile(std::move(scene),
-                              test::shipped_script("flat_week.yaml", {"sensing.response=zones", many_days}));
+  const Model model =
+      compile(std::move(scene), test::shipped_script("flat_week.yaml", {"sensing.response=zones", many_days}));
   std::set<std::string> eaten_at, toilets;
   for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
     for (const auto& [what, place] : deeds_of(model, run)) {

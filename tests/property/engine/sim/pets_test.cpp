@@ -196,8 +196,8 @@ TEST_CASE("a pet goes through an open door and not through a shut one, and a cat
 
 TEST_CASE("a cat leaves a sofa alone on which somebody lies", "[people][seconds]") {
   ScriptSpec script = script_with_pet(PetKind::cat, 43200.0);
-  script.trials.front().people = {test::person(
-      "ann", {test::act(action::Appear{{}, 0.0, "sofa"}), test::act(action::Wait{43100.0})})};
+  script.trials.front().people = {
+      test::person("ann", {test::act(action::Appear{{}, 0.0, "sofa"}), test::act(action::Wait{43100.0})})};
   CHECK(diary_of(compile(rooms_with_door(DoorState::open), script), 0).highest_m == 0.0);
 }
 
@@ -219,8 +219,8 @@ TEST_CASE("a dog gets up a tenth as often by night as by day", "[people][seconds
       lay = lies;
     }
   }
-  // Bouts come at 24 a day: 51 by day, 2.1 by night, each with the standard error of a Poisson number; 21 if nights were
-  // days.
+  // Bouts come at 24 a day: 51 by day, 2.1 by night, each with the standard error of a Poisson number; 21 if nights
+  // were days.
   CHECK(by_day > 51 - 3 * 7);
   CHECK(by_day < 51 + 3 * 7);
   CHECK(by_night < 8);
