@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+import types
 
 import pytest
 from test_counter import STEP_S, T0, bits_of, made, random_counter, same  # noqa: F401
@@ -44,6 +45,19 @@ def test_faults_are_told_before_anything_is_connected(options, told, tmp_path):
     done = subprocess.run([sys.executable, "-m", "pirsim_live", "mqtt", "@options.txt", *sensors, *options], cwd=tmp_path,
                           capture_output=True, text=True, timeout=20)
     assert done.returncode == 2 and told in done.stderr, done.stderr
+
+
+def test_sensors_that_say_nothing_or_no_word_of_motion_are_told(made, caplog):  # noqa: F811
+    now = [float(T0)]
+    client = types.SimpleNamespace(**dict.fromkeys(("will_set", "publish", "subscribe"), lambda *_, **__: None))
+    bridge = Bridge(Counter(made(random.Random(3), sensors=2)), [Source("sensor_1", "a"), Source("sensor_2", "b")], client,
+                    clock=lambda: now[0], monotonic=lambda: now[0])
+    bridge._greet(client, None, None, types.SimpleNamespace(is_failure=False))
+    bridge._hear(client, None, types.SimpleNamespace(topic="a", payload=b"open", retain=False))
+    assert "sensor_1: a says b'open'" in caplog.text and "nothing was heard" not in caplog.text
+    now[0] += 400
+    bridge._update()
+    assert "nothing was heard of sensor_2:" in caplog.text
 
 
 def test_words_are_those_of_logs():
