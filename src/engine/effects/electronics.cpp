@@ -162,11 +162,13 @@ enum class Retrigger { restarts, ignored };
 
 class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
  public:
-  PulseStretching(std::vector<std::uint32_t> sensors, double hold_ticks, double spread, Retrigger retrigger)
-      : sensors_(std::move(sensors)), hold_ticks_(hold_ticks), spread_(spread), retrigger_(retrigger) {}
+  PulseStretching(std::vector<std::uint32_t> sensors, double mean_ticks, const Trend& trend, double spread,
+                  Retrigger retrigger)
+      : sensors_(std::move(sensors)), mean_ticks_(mean_ticks), trend_(trend), spread_(spread), retrigger_(retrigger) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     streams_ = streams_of(sensors_, seed, run, Purpose::pulse_length);
+    hold_ticks_ = trend_.in_run(mean_ticks_, run);
     high_until_.assign(sensors_.size(), 0);
   }
 
@@ -185,9 +187,11 @@ class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
 
  private:
   std::vector<std::uint32_t> sensors_;
-  double hold_ticks_;
+  double mean_ticks_;  ///< over the runs
+  Trend trend_;
   double spread_;
   Retrigger retrigger_;
+  double hold_ticks_ = 0.0;  ///< in this run
   std::vector<Stream> streams_;
   std::vector<std::int64_t> high_until_;  ///< (n_sensors) last tick of the pulse
 };
@@ -195,7 +199,7 @@ class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
 std::unique_ptr<TriggerStage> make_pulse_stretching(const EffectSpec& effect, const StageContext& context) {
   return std::make_unique<PulseStretching>(
       sensors_of(effect, context.scene), effect.parameters.at("hold_s") * context.sensing.tick_rate_hz,
-      effect.parameters.at("spread"),
+      Trend(effect, context), effect.parameters.at("spread"),
       word(effect, "retrigger") == "ignored" ? Retrigger::ignored : Retrigger::restarts);
 }
 
@@ -206,18 +210,23 @@ Effect pulse_stretching() {
                .stage = "electronics",
                .summary =
                    "A sensor's output stays high for a while after each trigger, across the poll. A trigger meanwhile "
-                   "starts that time anew, or is ignored.",
-               .fingerprint = "runs of ones are longer, gaps shorter; cells with much scattered activity rise most",
+                   "starts that time anew, or is ignored. The time stays, or grows from run to run (a capacitor that "
+                   "ages) and is the mean over the study's runs.",
+               .fingerprint =
+                   "runs of ones are longer, gaps shorter; cells with much scattered activity rise most, or later ones",
                .confused_with = {"dead_time", "fidgeting"},
                .parameters = {logarithmic(
                                   strength("hold_s", "s", 1.0, 0.2, 4.0, 600.0,
                                            "assumed: hold times of common PIR modules begin at some 0.3-2.5 s")),
                               detail("spread", "", 0.0, 0.0, 1.0, 0.0, 1.0,
                                      "assumed: each pulse between (1 - spread) and (1 + spread) times hold_s")},
-               .choices = {{"retrigger", ChoiceKind::variant, {"restarts", "ignored"}, "restarts"}, sensor_choice()},
+               .choices = {{"retrigger", ChoiceKind::variant, {"restarts", "ignored"}, "restarts"},
+                           trend_choice(),
+                           sensor_choice()},
                .reach = Reach::triggers,
                .idle_in = {Survey::walk_test}},
-      .make_stage = make_pulse_stretching};
+      .make_stage = make_pulse_stretching,
+      .draw = draw_trend};
 }
 
 // clock_lag: the logger's clock isn't the choreography's.

@@ -101,32 +101,35 @@ Effect warm_chair() {
 
 // false_triggers: triggers without a person: noise of element and amplifier, draughts.
 
-/// A Poisson process a sensor, or one for all of them, alike at all times.
+/// A Poisson process a sensor, or one for all of them, alike at all times of a run.
 class FalseTriggers final : public CloneableTriggerStage<FalseTriggers> {
  public:
   /// groups: sensors that trigger together.
-  FalseTriggers(std::vector<std::vector<std::uint32_t>> groups, double mean_per_tick)
-      : groups_(std::move(groups)), mean_per_tick_(mean_per_tick) {
+  FalseTriggers(std::vector<std::vector<std::uint32_t>> groups, double mean_per_tick, const Trend& trend)
+      : groups_(std::move(groups)), mean_per_tick_(mean_per_tick), trend_(trend) {
     for (const auto& group : groups_) first_.push_back(group.front());
   }
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     streams_ = streams_of(first_, seed, run, Purpose::false_trigger);
+    per_tick_ = trend_.in_run(mean_per_tick_, run);
     next_.clear();
-    for (Stream& stream : streams_) next_.push_back(ticks_to_event(stream, mean_per_tick_));
+    for (Stream& stream : streams_) next_.push_back(ticks_to_event(stream, per_tick_));
   }
 
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
       if (tick != next_[i]) continue;
       for (const std::uint32_t sensor : groups_[i]) triggers[sensor] = 1;
-      next_[i] += ticks_to_event(streams_[i], mean_per_tick_);
+      next_[i] += ticks_to_event(streams_[i], per_tick_);
     }
   }
 
  private:
   std::vector<std::vector<std::uint32_t>> groups_;
-  double mean_per_tick_;
+  double mean_per_tick_;  ///< over the runs
+  Trend trend_;
+  double per_tick_ = 0.0;             ///< in this run
   std::vector<std::uint32_t> first_;  ///< (n_groups) sensor
   std::vector<Stream> streams_;       ///< (n_groups)
   std::vector<std::int64_t> next_;    ///< (n_groups) tick
@@ -140,30 +143,35 @@ std::unique_ptr<TriggerStage> make_false_triggers(const EffectSpec& effect, cons
   } else {
     for (const std::uint32_t sensor : sensors) groups.push_back({sensor});
   }
-  return std::make_unique<FalseTriggers>(std::move(groups),
-                                         effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz);
+  return std::make_unique<FalseTriggers>(
+      std::move(groups), effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz, Trend(effect, context));
 }
 
 /// One sensor alone triggers by itself whichever word says so.
-void draw_false_triggers(EffectSpec& effect, const SceneSpec&, const ScriptSpec&, Stream&) {
+void draw_false_triggers(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
+  draw_trend(effect, scene, script, stream);
   if (effect.choices.contains("sensor")) effect.choices["timing"] = "independent";
 }
 
 Effect false_triggers() {
   return {
-      .info = {.name = "false_triggers",
-               .family = Family::environment,
-               .stage = "environment",
-               .summary =
-                   "Sensors trigger at random moments without anybody's doing, at one rate: each by itself, or all at "
-                   "the same moments, as a disturbed supply makes them.",
-               .fingerprint = "silent cells come alive, all by the same amount; single ones, at any moment",
-               .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
-               .parameters = {logarithmic(strength("rate_per_s", "1/s", 0.01, 0.0005, 0.06, 10.0,
-                                                   "assumed: from one in half an hour to one in 17 s"))},
-               .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
-                           sensor_choice()},
-               .reach = Reach::triggers},
+      .info =
+          {.name = "false_triggers",
+           .family = Family::environment,
+           .stage = "environment",
+           .summary =
+               "Sensors trigger at random moments without anybody's doing, each by itself, or all at the same "
+               "moments, as a disturbed supply makes them. The rate stays, or grows from run to run and is the mean "
+               "over the study's runs.",
+           .fingerprint =
+               "silent cells come alive, all by the same amount, or later ones more; single ones, at any moment",
+           .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
+           .parameters = {logarithmic(strength("rate_per_s", "1/s", 0.01, 0.0005, 0.06, 10.0,
+                                               "assumed: from one in half an hour to one in 17 s"))},
+           .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
+                       trend_choice(),
+                       sensor_choice()},
+           .reach = Reach::triggers},
       .make_stage = make_false_triggers,
       .draw = draw_false_triggers};
 }

@@ -23,9 +23,8 @@ void draw_trend(EffectSpec& effect, const SceneSpec&, const ScriptSpec& script, 
 Trend::Trend(const EffectSpec& effect, const StageContext& context)
     : kind_(word(effect, "trend") == "growing" ? Kind::growing : Kind::steady), n_runs_(context.n_runs) {}
 
-double Trend::chance(double mean, std::uint32_t run) const noexcept {
-  if (kind_ == Kind::steady) return mean;
-  return std::min(1.0, mean * 2.0 * (1.0 + run) / (1.0 + n_runs_));
+double Trend::in_run(double mean, std::uint32_t run) const noexcept {
+  return kind_ == Kind::steady ? mean : mean * 2.0 * (1.0 + run) / (1.0 + n_runs_);
 }
 
 std::string word(const EffectSpec& effect, std::string_view choice) {

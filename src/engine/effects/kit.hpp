@@ -131,9 +131,12 @@ void draw_trend(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& sc
 class Trend {
  public:
   Trend(const EffectSpec& effect, const StageContext& context);
-  /// Steady: `mean`. Growing: from run to run in equal steps, so that `mean` is the mean over all runs; a chance that
-  /// would exceed 1 is 1.
-  [[nodiscard]] double chance(double mean, std::uint32_t run) const noexcept;
+  /// Steady: `mean`. Growing: from run to run in equal steps, so that `mean` is the mean over all runs.
+  [[nodiscard]] double in_run(double mean, std::uint32_t run) const noexcept;
+  /// The same of a chance: what would exceed 1 is 1.
+  [[nodiscard]] double chance(double mean, std::uint32_t run) const noexcept {
+    return std::min(1.0, in_run(mean, run));
+  }
 
  private:
   enum class Kind { steady, growing } kind_;

@@ -61,8 +61,9 @@ struct Decision {
 /// passes.
 [[nodiscard]] bool comes_nearest(const HypothesisScore& dropped, const Look& applied);
 
-/// Several effects that explain too little of held-out trials become one of them, or something else; true if so.
-[[nodiscard]] bool take_back_several(Outcome& outcome);
+/// One or several named effects that explain too little of held-out trials become one of these, or something else; true
+/// if so.
+[[nodiscard]] bool withdraw(Outcome& outcome);
 
 /// Does the effect change how many people were there?
 [[nodiscard]] bool is_about_counts(const std::string& hypothesis);

@@ -166,6 +166,28 @@ TEST_CASE("what is missed grows from run to run in equal steps about its mean") 
   CHECK(std::abs(lost(0.25, "growing", 0) - 0.25) < 4.0 * std::sqrt(0.25 * 0.75 / n));
 }
 
+TEST_CASE("a hold and a rate of false triggers grow from run to run in equal steps about their mean") {
+  Bench bench;
+  bench.n_runs = 4;
+  const std::size_t n_ticks = 1'000'000;
+  for (std::uint32_t run = 0; run < bench.n_runs; ++run) {
+    CAPTURE(run);
+    const auto ones_of = [&](const std::string& trend, const std::string& name,
+                             std::map<std::string, double, std::less<>> by, const Series& before) {
+      return count(through(bench.pipeline({effect(name, std::move(by), {{"trend", trend}})}, run), before)[0]);
+    };
+    const Series one = with_ones(400, {10});
+    CHECK(ones_of("growing", "pulse_stretching", {{"hold_s", 1.0}}, one) == 1.0 + 20.0 * (run + 1.0));
+    CHECK(ones_of("steady", "pulse_stretching", {{"hold_s", 1.0}}, one) == 51.0);
+    const double expected = 0.02 * (run + 1.0) * static_cast<double>(n_ticks) / rate_hz;  // mean 0.05 a second
+    const Series nothing(n_ticks, 0);
+    CHECK(std::abs(ones_of("growing", "false_triggers", {{"rate_per_s", 0.05}}, nothing) - expected) <
+          4.0 * std::sqrt(expected));
+    CHECK_FALSE(std::abs(ones_of("steady", "false_triggers", {{"rate_per_s", 0.05}}, nothing) - expected) <
+                4.0 * std::sqrt(expected));
+  }
+}
+
 TEST_CASE("after a trigger a dead time lets nothing through and the next trigger after it at once") {
   const Series before = with_ones(500, {10, 11, 109, 110, 111, 300});
   const auto after = through(Bench().pipeline({effect("dead_time", {{"dead_s", 2.0}})}), before)[0];
