@@ -72,9 +72,8 @@ bool comes_nearest(const HypothesisScore& dropped, const Look& applied) {
   return applied.passes() && dropped.probability >= DecisionLevels().sure;
 }
 
-bool withdraw(Outcome& outcome) {
-  if (outcome.verdict != Verdict::several && outcome.verdict != Verdict::named) return false;
-  if (!outcome.verification || outcome.verification->explains()) return false;
+bool take_back_several(Outcome& outcome) {
+  if (outcome.verdict != Verdict::several || !outcome.verification || outcome.verification->explains()) return false;
   outcome.verdict = Verdict::one_of;
   outcome.fits.clear();
   for (Candidate& candidate : outcome.candidates) candidate.named_together = false;

@@ -61,9 +61,8 @@ struct Decision {
 /// passes.
 [[nodiscard]] bool comes_nearest(const HypothesisScore& dropped, const Look& applied);
 
-/// One or several named effects that explain too little of held-out trials become one of these, or something else; true
-/// if so.
-[[nodiscard]] bool withdraw(Outcome& outcome);
+/// Several effects that explain too little of held-out trials become one of them, or something else; true if so.
+[[nodiscard]] bool take_back_several(Outcome& outcome);
 
 /// Does the effect change how many people were there?
 [[nodiscard]] bool is_about_counts(const std::string& hypothesis);

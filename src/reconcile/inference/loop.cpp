@@ -474,7 +474,8 @@ class Loop {
          " before, " + p_in_words(v.after.p, v.after.least_p) + " after");
     if (!v.refused) tell("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
     outcome_.verification = std::move(v);
-    if (withdraw(outcome_)) tell("what was named is taken back: it explains too little of held-out trials");
+    if (take_back_several(outcome_))
+      tell("several together are taken back: they explain too little of held-out trials");
   }
 
   [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const {
