@@ -4,9 +4,12 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "pirsim/csv.hpp"
 #include "pirsim/reconcile.hpp"
 #include "reconcile/selftest/plan.hpp"
 #include "reconcile/selftest/selftest.hpp"
@@ -29,6 +32,15 @@ namespace pirsim::reconcile {
 [[nodiscard]] io::GridChart confusion_chart(const SelftestResult& result);
 /// How often an effect is seen, and is then in the set, against its strength.
 [[nodiscard]] io::LineChart power_chart(const SelftestResult& result, const std::string& effect);
+
+/// As CSV, a line an item.
+template <typename Row, std::size_t n, typename Items>
+[[nodiscard]] std::string table_of(const Column<Row> (&columns)[n], const Items& items) {
+  std::ostringstream out;
+  io::TableWriter<Row> csv(out, std::span<const Column<Row>>(columns));
+  for (const auto& item : items) csv.write(Row(item));
+  return out.str();
+}
 
 /// "95 % (75 % to 100 %, 19 of 20)".
 [[nodiscard]] std::string with_interval(const Rate& rate);
