@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "model/core/parallel.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/occupancy.hpp"
 #include "pirsim/random.hpp"
@@ -90,6 +91,14 @@ class SimulatedRealization {
   Realization realization_;
   std::unique_ptr<Traced> traced_;
 };
+
+/// Results of make(i) for i in [0, n), in order.
+template <typename Result, typename Make>
+[[nodiscard]] std::vector<Result> in_parallel(std::size_t n, unsigned threads, const Make& make) {
+  std::vector<Result> all;
+  ordered_parallel<Result>(n, threads, make, [&](Result& one) { all.push_back(std::move(one)); });
+  return all;
+}
 
 /// True if all these effects act on what remembered zones trigger, so that with_effects() is cheap.
 [[nodiscard]] bool acts_on_remembered_zones(std::span<const EffectSpec> effects);

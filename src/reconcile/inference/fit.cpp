@@ -303,10 +303,9 @@ std::vector<double> HypothesisProbabilities::of(std::span<const float> statistic
 HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
                                            const Context& context)
     : map_(&view.map()),
+      names_(view.table().hypotheses()),
       seen_rows_(reconcile::seen_rows(view, settings.alpha, settings.left_out)),
       data_(view.table(), seen_rows_, settings.left_out) {
-  for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
-    names_.push_back(view.table().hypothesis_name(hypothesis));
   stats::ConformalSettings conformal;
   conformal.pooled.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads};
   conformal.pooled.threads = context.threads;

@@ -110,16 +110,14 @@ Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t>
   }
   const double prior = 1.0 / static_cast<double>(reference.table.n_hypotheses());
   constexpr double least_probability = 1e-4;
-  ordered_parallel<Judgement>(
-      judged.rows.size(), context.threads,
-      [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); },
-      [&](Judgement& one) {
-        const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
-        judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
-        const auto best = std::ranges::max_element(one.scores, {}, &HypothesisScore::probability);
-        judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
-        judged.p.push_back(one.p);
-      });
+  const auto judge = [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); };
+  for (const Judgement& one : in_parallel<Judgement>(judged.rows.size(), context.threads, judge)) {
+    const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
+    judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
+    const auto best = std::ranges::max_element(one.scores, {}, &HypothesisScore::probability);
+    judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
+    judged.p.push_back(one.p);
+  }
   return judged;
 }
 
@@ -220,11 +218,7 @@ std::vector<std::vector<double>> confusion_of(const ReferenceStudy& reference, c
   for (std::size_t i = 0; i < judged.rows.size(); ++i) {
     shares[reference.table.rows[judged.rows[i]].hypothesis][judged.likeliest[i]] += 1.0;
   }
-  for (std::vector<double>& row : shares) {
-    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
-    for (double& share : row) share = sum > 0.0 ? share / sum : 0.0;
-  }
-  return shares;
+  return shares_of_rows(std::move(shares));
 }
 
 /// A tenth of what naming takes: designs are compared on the same realizations, so that few suffice.
@@ -308,8 +302,7 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
   PlanResult result;
   result.left_out = std::move(study.left_out);
   result.n_datasets = base.rows.size();
-  for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
-    result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
+  result.hypotheses = reference.table.hypotheses();
   result.designs.push_back({as_planned.name,
                             as_planned.what,
                             minutes_of(reference, planned),

@@ -130,6 +130,8 @@ struct ConfusedPair {
 };
 /// Pairs whose share is at least so great, in three cases or more; the most confused first.
 [[nodiscard]] std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share = 0.1);
+/// Each row divided by its sum, if that isn't 0.
+[[nodiscard]] std::vector<std::vector<double>> shares_of_rows(std::vector<std::vector<double>> counts);
 /// (n_hypotheses x n_hypotheses) row: truth, column: likeliest hypothesis; shares of the row, of cases with a
 /// disagreement.
 [[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);
