@@ -67,10 +67,6 @@ class SimulatedRealization {
   /// Traces n_runs runs of every trial. Throws Error(infeasible) if no attempt gives a realization to get about in.
   SimulatedRealization(const RealizationSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs);
   ~SimulatedRealization();
-  SimulatedRealization(SimulatedRealization&&) noexcept;
-  SimulatedRealization& operator=(SimulatedRealization&&) noexcept;
-  SimulatedRealization(const SimulatedRealization&) = delete;
-  SimulatedRealization& operator=(const SimulatedRealization&) = delete;
 
   [[nodiscard]] const Realization& drawn() const noexcept { return realization_; }
   /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
@@ -99,8 +95,5 @@ template <typename Result, typename Make>
   ordered_parallel<Result>(n, threads, make, [&](Result& one) { all.push_back(std::move(one)); });
   return all;
 }
-
-/// True if all these effects act on what remembered zones trigger, so that with_effects() is cheap.
-[[nodiscard]] bool acts_on_remembered_zones(std::span<const EffectSpec> effects);
 
 }  // namespace pirsim::reconcile

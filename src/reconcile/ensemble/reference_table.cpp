@@ -226,11 +226,6 @@ void keep_meaningful(const RealizationSource& source, std::vector<std::string>& 
   });
 }
 
-void append(TableChunk& chunk, TableChunk& more) {
-  chunk.n_left_out += more.n_left_out;
-  std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
-}
-
 }  // namespace
 
 std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame, std::uint32_t n_realizations,
@@ -279,12 +274,13 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
   TableStore store(folder, table.key);
   table.effects = settings.effects;
   table.profile = profile;
-  table.n_realizations = settings.n_realizations;
   for_each_chunk(
       store, settings.n_realizations, context,
       [&](std::uint32_t index) { return simulate_datasets(source, frame, shape.n_replicates, settings, index); },
       [&](TableChunk& chunk) {
-        append_statistics(frame, shape, profile, chunk, context.threads, table.statistics);
+        const auto row_of = [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); };
+        for (const auto& row : in_parallel<std::vector<float>>(chunk.datasets.size(), context.threads, row_of))
+          table.statistics.append_row(row);
         for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
         table.n_left_out += chunk.n_left_out;
       });
@@ -379,20 +375,14 @@ void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& con
       ordered_parallel<TableChunk>(
           n, context.threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
           [&](TableChunk& one) {
-            append(*chunk, one);
+            chunk->n_left_out += one.n_left_out;
+            std::ranges::move(one.datasets, std::back_inserter(chunk->datasets));
             tell(++n_there);
           });
       store.keep(first / items_per_chunk, *chunk);
     }
     use(*chunk);
   }
-}
-
-void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
-                       unsigned threads, stats::Matrix<float>& statistics) {
-  const auto row_of = [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); };
-  for (const auto& row : in_parallel<std::vector<float>>(chunk.datasets.size(), threads, row_of))
-    statistics.append_row(row);
 }
 
 }  // namespace pirsim::reconcile

@@ -31,8 +31,7 @@ class ReferenceTable {
   std::vector<TableRow> rows;        ///< by realization, then hypothesis
   stats::Matrix<float> statistics;   ///< (n_rows x n_statistics)
   Profile profile;                   ///< of the plain model, from pilot runs
-  std::uint32_t n_realizations = 0;
-  std::uint32_t n_left_out = 0;  ///< datasets in whose realizations people couldn't get about
+  std::uint32_t n_left_out = 0;      ///< datasets in whose realizations people couldn't get about
 
   [[nodiscard]] std::size_t n_hypotheses() const noexcept { return 1 + effects.size(); }
   /// Their names.
@@ -115,9 +114,5 @@ using ItemJob = std::function<TableChunk(std::uint32_t index)>;
 /// on several threads, and kept there; the context is told how many are done.
 void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
                     const std::function<void(TableChunk&)>& use);
-
-/// A row a dataset.
-void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
-                       unsigned threads, stats::Matrix<float>& statistics);
 
 }  // namespace pirsim::reconcile

@@ -102,8 +102,7 @@ std::vector<double> tested_features(const FeatureMap& map, std::span<const float
 
 stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features) {
   stats::Matrix<double> tested(features.rows(), map.envelope_columns().size());
-  for (std::size_t row = 0; row < features.rows(); ++row)
-    std::ranges::copy(tested_features(map, features.row(row)), tested.row(row).begin());
+  std::ranges::copy(features.select_columns(map.envelope_columns()).values(), tested.values().begin());
   return tested;
 }
 

@@ -625,21 +625,17 @@ Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Sc
 
 std::string what_of(How how, double z, const std::string& other) {
   const bool up = z > 0.0;
-  switch (how) {
-    case How::more:
-      return up ? "more motion than expected" : "less motion than expected";
-    case How::more_where_little:
-      return up ? "motion where hardly any is expected" : "still less motion where hardly any is expected";
-    case How::more_where_much:
-      return up ? "still more motion where much is expected" : "less motion where much is expected";
-    case How::opposite:
-      return up ? "the opposite of what is expected"
-                : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly "
-                  "never";
-    case How::beside:
-      break;
-  }
-  return (up ? "motion whenever " : "silence whenever ") + other + (up ? " sees some" : " sees motion");
+  if (how == How::beside)
+    return (up ? "motion whenever " : "silence whenever ") + other + (up ? " sees some" : " sees motion");
+  using UpAndDown = std::pair<const char*, const char*>;
+  static constexpr std::array<UpAndDown, 4> all{
+      {{"more motion than expected", "less motion than expected"},
+       {"motion where hardly any is expected", "still less motion where hardly any is expected"},
+       {"still more motion where much is expected", "less motion where much is expected"},
+       {"the opposite of what is expected",
+        "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly never"}}};
+  const auto& [more, less] = all[static_cast<std::size_t>(how)];
+  return up ? more : less;
 }
 
 /// The measured bits regressed on the drivers found so far.

@@ -53,12 +53,11 @@ io::GridChart power_grid(const PlanResult& result) {
 }
 
 io::GridChart confusion_chart(const PlanResult& result) {
-  io::GridChart chart = confusion_grid(result.hypotheses, result.confusion);
-  chart.title = "What would be hidden (rows), and what it would look like most (columns), % of cases";
-  chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can hardly "
-      "tell apart.";
-  return chart;
+  return confusion_grid(
+      result.hypotheses, result.confusion,
+      "What would be hidden (rows), and what it would look like most (columns), % of cases",
+      "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can "
+      "hardly tell apart.");
 }
 
 constexpr Column<Design> design_columns[]{
@@ -305,7 +304,6 @@ std::string in_plain_words(const std::string& statistic) {
                                                         {"period_power", "motion comes periodically"},
                                                         {"cycle_strength", "motion keeps time with the arms"},
                                                         {"agreement", "motion comes when expected"},
-                                                        {"shift_s", "motion comes later than expected"},
                                                         {"lead_seconds", "motion before the main part"},
                                                         {"tail_seconds", "motion after the main part"},
                                                         {"late_tail_seconds", "motion long after the main part"},
@@ -317,8 +315,6 @@ std::string in_plain_words(const std::string& statistic) {
   if (const auto found = words.find(statistic); found != words.end()) return found->second;
   constexpr std::string_view again = "again_after_";
   if (statistic.starts_with(again)) return "motion again " + statistic.substr(again.size()) + " s later";
-  constexpr std::string_view sixth = "sixth_";
-  if (statistic.starts_with(sixth)) return "motion in part " + statistic.substr(sixth.size()) + " of 6";
   std::string text = statistic;
   std::ranges::replace(text, '_', ' ');
   return text;
@@ -516,10 +512,12 @@ io::GridChart::Cell share_cell(const Rate& rate) {
   return cell;
 }
 
-io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
-                             const std::vector<std::vector<double>>& shares) {
+io::GridChart confusion_grid(const std::vector<std::string>& hypotheses, const std::vector<std::vector<double>>& shares,
+                             const std::string& title, const std::string& note) {
   constexpr double worth_a_number = 0.05;
   io::GridChart chart;
+  chart.title = title;
+  chart.note = note;
   chart.label = "share of a row";
   chart.rows = chart.columns = hypotheses;
   for (const std::vector<double>& row : shares) {

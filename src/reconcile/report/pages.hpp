@@ -47,9 +47,10 @@ template <typename Row, std::size_t n, typename Items>
 /// A square with the share in percent; an empty one without any case.
 [[nodiscard]] io::GridChart::Cell share_cell(const Rate& rate);
 /// What was hidden (rows) against what it was taken for (columns). shares: (n_hypotheses x n_hypotheses) of each row; a
-/// row of zeros has no case and stays empty. Title and note are the caller's.
+/// row of zeros has no case and stays empty.
 [[nodiscard]] io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
-                                           const std::vector<std::vector<double>>& shares);
+                                           const std::vector<std::vector<double>>& shares, const std::string& title,
+                                           const std::string& note);
 
 /// How a reader gets at the runs in which a cell was counted.
 struct Watched {

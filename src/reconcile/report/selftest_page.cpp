@@ -13,18 +13,14 @@
 namespace pirsim::reconcile {
 namespace {
 
-io::Table rate_table(const SelftestResult& result) {
-  io::Table table{{"how often", "share (95 % interval)"}, {}};
-  for (const Rate& rate : rates_of(result)) table.rows.push_back({rate.what, with_interval(rate)});
-  return table;
-}
-
 io::Table pair_table(const std::vector<ConfusedPair>& pairs) {
   io::Table table{{"pair", "share", "in the catalogue", "what each does to the data"}, {}};
+  const auto does = [](const std::string& effect) {
+    return effect + ": " + effects::find(effect).info.fingerprint + ".";
+  };
   for (const ConfusedPair& pair : pairs) {
     table.rows.push_back({pair.first + ", " + pair.second, with_interval(pair.rate),
-                          pair.expected ? "foreseen" : "not foreseen",
-                          pair.first + ": " + pair.first_does + ". " + pair.second + ": " + pair.second_does + "."});
+                          pair.expected ? "foreseen" : "not foreseen", does(pair.first) + " " + does(pair.second)});
   }
   return table;
 }
@@ -178,12 +174,10 @@ std::string calibration_error(const SelftestResult& result) {
 }  // namespace
 
 io::GridChart confusion_chart(const SelftestResult& result) {
-  io::GridChart chart = confusion_grid(result.hypotheses, confusion_of(result));
-  chart.title = "What was hidden (rows), and what it looked like most (columns)";
-  chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
-      "effect without a disagreement are left out.";
-  return chart;
+  return confusion_grid(result.hypotheses, confusion_of(result),
+                        "What was hidden (rows), and what it looked like most (columns)",
+                        "Dark squares on the diagonal are right; dark squares beside it are two effects that "
+                        "look alike. Cases of an effect without a disagreement are left out.");
 }
 
 io::LineChart power_chart(const SelftestResult& result, const std::string& effect) {
@@ -211,6 +205,8 @@ io::Report selftest_page(const SelftestResult& result) {
   io::Report report;
   report.title = "Does reconciliation find what is hidden?";
   report.finding = finding(result);
+  io::Table rates{{"how often", "share (95 % interval)"}, {}};
+  for (const Rate& rate : rates_of(result)) rates.rows.push_back({rate.what, with_interval(rate)});
   io::ReportSection calibration{"Can probabilities and intervals be trusted",
                                 {"Mean distance between probability and share: " + calibration_error(result) + "."},
                                 {},
@@ -221,7 +217,7 @@ io::Report selftest_page(const SelftestResult& result) {
                      pairs(result),
                      power(result),
                      std::move(calibration),
-                     {"All rates", {}, {rate_table(result)}, {}}};
+                     {"All rates", {}, {std::move(rates)}, {}}};
   return report;
 }
 

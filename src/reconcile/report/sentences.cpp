@@ -1,6 +1,7 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <string_view>
@@ -65,25 +66,18 @@ std::string alike(const DataFinding& finding, const std::string& how) {
 }
 
 /// Where to look for the cause.
-std::string_view advice(What what) {
-  switch (what) {
-    case What::equal_columns:
-    case What::opposite_columns:
-      return "see which input each of the two columns was read from";
-    case What::constant_column:
-      return "see whether the output or its wire is stuck";
-    case What::beats:
-      return "see whether the logger writes its sign of life or its polling as motion";
-    case What::polled:
-      return "see how often the logger asks: if only so often, set window_s to that and resample the rows";
-    case What::repeated_rows:
-      return "see whether files were joined or saved under a wrong name; take one of the two places out";
-    case What::all_silent:
-      return "see whether anything was recorded then; leave fields empty that are unknown";
-    case What::silent_column:
-      break;
-  }
-  return "see whether the sensor has power and its column is the right one";
+std::string advice(What what) {
+  constexpr const char* of_two = "see which input each of the two columns was read from";
+  static constexpr std::array<const char*, data_finding_names.size()> all{
+      of_two,
+      of_two,
+      "see whether the output or its wire is stuck",
+      "see whether the logger writes its sign of life or its polling as motion",
+      "see how often the logger asks: if only so often, set window_s to that and resample the rows",
+      "see whether files were joined or saved under a wrong name; take one of the two places out",
+      "see whether anything was recorded then; leave fields empty that are unknown",
+      "see whether the sensor has power and its column is the right one"};
+  return all[static_cast<std::size_t>(what)];
 }
 
 using Names = std::vector<std::string>;
@@ -433,7 +427,7 @@ std::string sentence_of_file(const Outcome& outcome) {
 std::string next_step_of_faulty(const Outcome& outcome) {
   std::vector<std::string> steps;
   for (const DataFinding& finding : outcome.data_findings) {
-    const std::string step(advice(finding.what));
+    const std::string step = advice(finding.what);
     if (finding.is_impossible && std::ranges::find(steps, step) == steps.end()) steps.push_back(step);
   }
   return "What to do next: " + joined(steps, "; ") +
@@ -539,7 +533,7 @@ io::ReportSection file_section(const std::vector<DataFinding>& findings) {
     const std::string chance = finding.chance < 1e-12 ? "below 1e-12" : short_number(finding.chance);
     table.rows.push_back({in_words(finding),
                           finding.is_impossible ? "by chance " + chance : "odd, but sensors can do that",
-                          std::string(advice(finding.what))});
+                          advice(finding.what)});
   }
   return {"A look at the file",
           {"Before anything is compared, the rows themselves are looked at: can sensors have said them? What the "

@@ -63,12 +63,6 @@ TrialSpec slow_walk(const SceneSpec& scene, const ScriptSpec& script) {
   return trial;
 }
 
-TrialSpec empty_room(const ScriptSpec& script) {
-  TrialSpec trial = alone(script, "empty room");
-  trial.people.front().actions = {labelled(action::Wait{60.0 * empty_room_min}, script)};
-  return trial;
-}
-
 std::string unused_id(const ScriptSpec& script, std::string id, const std::string& more) {
   while (std::ranges::find(script.trials, id, &TrialSpec::id) != script.trials.end()) id += more;
   return id;
@@ -269,7 +263,11 @@ LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
     study.script.trials.push_back(std::move(again));
   }
   add(study, scene, study.walk, "a slow walk", [&] { return slow_walk(scene, script); });
-  add(study, scene, study.empty, "the empty room", [&] { return empty_room(script); });
+  add(study, scene, study.empty, "the empty room", [&] {
+    TrialSpec trial = alone(script, "empty room");
+    trial.people.front().actions = {labelled(action::Wait{60.0 * empty_room_min}, script)};
+    return trial;
+  });
   return study;
 }
 
@@ -303,18 +301,14 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
   result.left_out = std::move(study.left_out);
   result.n_datasets = base.rows.size();
   result.hypotheses = reference.table.hypotheses();
-  result.designs.push_back({as_planned.name,
-                            as_planned.what,
-                            minutes_of(reference, planned),
-                            mean(base.bits),
-                            share_right(reference, base),
-                            0.0,
-                            {0.0, 0.0}});
+  const auto design_of = [](const ReferenceStudy& in, const Idea& idea, const Judged& with) {
+    return Design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
+  };
+  result.designs.push_back(design_of(reference, {as_planned.name, as_planned.what, planned}, base));
   const auto add = [&](const ReferenceStudy& in, const Idea& idea) {
     const Judged with = judged(in, idea);
-    Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
-    compare(by_realization(in, with), base_bits, design);
-    result.designs.push_back(std::move(design));
+    result.designs.push_back(design_of(in, idea, with));
+    compare(by_realization(in, with), base_bits, result.designs.back());
   };
   for (const Idea& idea : ideas_of(study, reference)) add(reference, idea);
   if (settings.kind == Measured::Kind::sums) {

@@ -36,12 +36,7 @@ void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, Injecte
 InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, const InjectedDataset& injected,
                     CaseKind kind) {
   const Judgement judgement = analyst.judge(injected.statistics);
-  InjectedCase result;
-  result.kind = kind;
-  result.truth = injected.truth();
-  result.strength = injected.strength;
-  result.effects = injected.effects;
-  result.verdict = judgement.decision.verdict;
+  InjectedCase result{kind, injected.truth(), injected.strength, injected.effects, judgement.decision.verdict};
   for (const std::size_t hypothesis : judgement.decision.kept) {
     if (hypothesis > 0) result.named.push_back(reference.table.hypothesis_name(hypothesis));
   }
@@ -92,8 +87,6 @@ stats::Reliability reliability_of(const SelftestResult& result) {
 bool names_other(const std::string& effect, const std::string& other) {
   return contains(effects::find(effect).info.confused_with, other);
 }
-
-const std::string& fingerprint_of(const std::string& effect) { return effects::find(effect).info.fingerprint; }
 
 }  // namespace
 
@@ -238,7 +231,7 @@ std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double le
     const auto& [a, b] = names;
     const Rate rate{"taken for each other", hits, cases[a] + cases[b]};
     if (hits < fewest_cases || rate.value() < least_share) continue;
-    pairs.push_back({a, b, rate, names_other(a, b) || names_other(b, a), fingerprint_of(a), fingerprint_of(b)});
+    pairs.push_back({a, b, rate, names_other(a, b) || names_other(b, a)});
   }
   std::ranges::stable_sort(pairs, std::ranges::greater{}, [](const ConfusedPair& pair) { return pair.rate.value(); });
   return pairs;
