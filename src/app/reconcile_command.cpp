@@ -42,20 +42,6 @@ struct ReconcileOptions {
 
 constexpr const char* folder_names = "-o,--output,--out";
 
-struct PlanOptions {
-  std::filesystem::path output = "reconcile_plan";  ///< folder
-  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
-  int runs = 1;
-};
-
-struct SelftestOptions {
-  std::filesystem::path output = "reconcile_selftest";  ///< folder
-  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
-  int runs = 1;
-  std::uint32_t nulls = 60, injected = 10, pairs = 0;
-  reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
-};
-
 reconcile::Settings settings_of(const AnalysisOptions& options, const std::filesystem::path& output,
                                 const ScriptSpec& script) {
   reconcile::Settings settings = reconcile::settings_of(script, options.alpha, options.budget, options.effects);
@@ -117,41 +103,6 @@ reconcile::Context context_of(const AnalysisOptions& options, AnalysisTeller& te
   return {options.seed, options.threads, teller.observer()};
 }
 
-void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
-  const ScriptSpec script = read_script(inputs);
-  const SceneSpec scene = read_scene(inputs);
-  reconcile::SelftestSettings settings{settings_of(analysis, options.output, script),
-                                       options.kind,
-                                       options.runs,
-                                       options.nulls,
-                                       options.injected,
-                                       options.pairs,
-                                       options.leave_out};
-  require_writable(options.output);
-  settings.injected_folder = settings.analysis.table_folder / "injected";
-  AnalysisTeller teller(inputs.verbosity);
-  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, context_of(analysis, teller));
-  teller.finish();
-  std::cout << reconcile::to_markdown(result);
-  require_written();
-  reconcile::write_selftest(options.output, result, made_by(inputs));
-  tell_written({{options.output}}, inputs.verbosity);
-}
-
-void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options) {
-  const ScriptSpec script = read_script(inputs);
-  const SceneSpec scene = read_scene(inputs);
-  reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
-  require_writable(options.output);
-  AnalysisTeller teller(inputs.verbosity);
-  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, context_of(analysis, teller));
-  teller.finish();
-  std::cout << reconcile::sentence(result) << '\n';
-  require_written();
-  reconcile::write_plan(options.output, result, made_by(inputs));
-  tell_written({{options.output}}, inputs.verbosity);
-}
-
 LogMap map_of(const ReconcileOptions& options) {
   LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
   if (!options.time_zone.empty()) map.time_zone = options.time_zone;
@@ -211,11 +162,48 @@ void offer_analysis(CLI::App& command, AnalysisOptions& options) {
   offer_threads(command, options.threads);
 }
 
-void offer_kind(CLI::App& command, reconcile::Measured::Kind& kind, const std::string& what) {
+/// Of a plan or a self-test.
+struct ExperimentWords {
+  std::filesystem::path output;
+  std::string folder, data, runs;     ///< what they are
+  std::vector<std::string> contents;  ///< of the folder
+};
+
+/// What a plan and a self-test share. run(scene, script, settings, context) gives the result, tell(result) what goes to
+/// standard output, write(folder, result, made_by) the files.
+template <typename Settings, typename OfferMore, typename Run, typename Tell, typename Write>
+void make_experiment(CLI::App& command, const ExperimentWords& words, const OfferMore& offer_more, const Run& run,
+                     const Tell& tell, const Write& write) {
   using Kind = reconcile::Measured::Kind;
-  command.add_option("--data", kind, what + ": series or sums (default: series)")
+  const auto inputs = std::make_shared<Inputs>();
+  const auto analysis = std::make_shared<AnalysisOptions>();
+  const auto output = std::make_shared<std::filesystem::path>(words.output);
+  const auto asked = std::make_shared<Settings>();
+  offer_study(command, *inputs);
+  offer_output_folder(command, folder_names, *output, words.folder + " (default: " + words.output.string() + ")",
+                      words.contents);
+  command.add_option("--data", asked->kind, words.data + ": series or sums (default: series)")
       ->option_text("KIND")
       ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
+  command.add_option("--runs", asked->n_replicates, words.runs + " of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  offer_more(*asked);
+  offer_analysis(command, *analysis);
+  on_call(command, inputs, [=](const Inputs& given) {
+    const ScriptSpec script = read_script(given);
+    const SceneSpec scene = read_scene(given);
+    Settings settings = *asked;
+    settings.analysis = settings_of(*analysis, *output, script);
+    require_writable(*output);
+    AnalysisTeller teller(given.verbosity);
+    const auto result = run(scene, script, settings, context_of(*analysis, teller));
+    teller.finish();
+    std::cout << tell(result);
+    require_written();
+    write(*output, result, made_by(given));
+    tell_written({{*output}}, given.verbosity);
+  });
 }
 
 void add_selftest_command(CLI::App& reconcile_command) {
@@ -224,30 +212,30 @@ void add_selftest_command(CLI::App& reconcile_command) {
   pirsim reconcile selftest --scene room.gltf --script study.yaml --budget 0.2
   pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --injected 40
 )");
-  const auto inputs = std::make_shared<Inputs>();
-  const auto analysis = std::make_shared<AnalysisOptions>();
-  const auto options = std::make_shared<SelftestOptions>();
-  offer_study(command, *inputs);
-  using reconcile::LeaveOut;
-  offer_output_folder(command, folder_names, options->output,
-                      "folder for rates and pictures (default: reconcile_selftest)",
-                      {"selftest.csv", "selftest.md", "selftest.html", "table"});
-  offer_kind(command, options->kind, "what faults are injected into");
-  command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
-      ->option_text("N")
-      ->check(CLI::Range(1, 100));
-  command.add_option("--nulls", options->nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
-  command.add_option("--injected", options->injected, "datasets of every effect and strength (default: 10)")
-      ->option_text("N");
-  command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
-  command
-      .add_option("--leave-out", options->leave_out,
-                  "effects: judge by catalogues that lack the effect, too (default: none)")
-      ->option_text("HOW")
-      ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"effects", LeaveOut::effects}}));
-  offer_analysis(command, *analysis);
-  on_call(command, inputs,
-          [analysis, options](const Inputs& given) { reconcile_selftest(given, *analysis, *options); });
+  using reconcile::LeaveOut, reconcile::SelftestSettings;
+  const auto offer_more = [&](SelftestSettings& settings) {
+    command.add_option("--nulls", settings.n_nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
+    command.add_option("--injected", settings.n_injected, "datasets of every effect and strength (default: 10)")
+        ->option_text("N");
+    command.add_option("--pairs", settings.n_pairs, "datasets with two effects (default: 0)")->option_text("N");
+    command
+        .add_option("--leave-out", settings.leave_out,
+                    "effects: judge by catalogues that lack the effect, too (default: none)")
+        ->option_text("HOW")
+        ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"effects", LeaveOut::effects}}));
+  };
+  const auto run = [](const SceneSpec& scene, const ScriptSpec& script, SelftestSettings& settings,
+                      const reconcile::Context& context) {
+    settings.injected_folder = settings.analysis.table_folder / "injected";
+    return reconcile::selftest(scene, script, settings, context);
+  };
+  make_experiment<SelftestSettings>(command,
+                                    {"reconcile_selftest",
+                                     "folder for rates and pictures",
+                                     "what faults are injected into",
+                                     "runs",
+                                     {"selftest.csv", "selftest.md", "selftest.html", "table"}},
+                                    offer_more, run, reconcile::to_markdown, reconcile::write_selftest);
 }
 
 void add_plan_command(CLI::App& reconcile_command) {
@@ -256,18 +244,15 @@ void add_plan_command(CLI::App& reconcile_command) {
   pirsim reconcile plan --scene room.gltf --script study.yaml -o plan
   pirsim reconcile plan --scene room.gltf --script study.yaml --data sums --runs 3
 )");
-  const auto inputs = std::make_shared<Inputs>();
-  const auto analysis = std::make_shared<AnalysisOptions>();
-  const auto options = std::make_shared<PlanOptions>();
-  offer_study(command, *inputs);
-  offer_output_folder(command, folder_names, options->output, "folder for page and tables (default: reconcile_plan)",
-                      {"plan.csv", "plan.html", "plan.json", "table"});
-  offer_kind(command, options->kind, "what is to be measured");
-  command.add_option("--runs", options->runs, "planned runs of every trial (default: 1)")
-      ->option_text("N")
-      ->check(CLI::Range(1, 100));
-  offer_analysis(command, *analysis);
-  on_call(command, inputs, [analysis, options](const Inputs& given) { reconcile_plan(given, *analysis, *options); });
+  make_experiment<reconcile::PlanSettings>(
+      command,
+      {"reconcile_plan",
+       "folder for page and tables",
+       "what is to be measured",
+       "planned runs",
+       {"plan.csv", "plan.html", "plan.json", "table"}},
+      [](const auto&) {}, reconcile::plan,
+      [](const reconcile::PlanResult& result) { return reconcile::sentence(result) + '\n'; }, reconcile::write_plan);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "reconcile/data/alignment.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,21 +31,17 @@ struct Lengths {
 };
 
 Lengths lengths_of(std::size_t trial, std::span<const Series> runs, std::size_t n_sensors) {
-  Lengths lengths;
-  bool any = false;
+  std::optional<Lengths> known;
   for (const Series& run : runs) {
     if (run.trial != trial) continue;
     const std::size_t tail = run.n_rows(n_sensors) - run.main_end, main = run.main_end - run.main_begin;
-    const auto shortest = [&](std::size_t& least, std::size_t length) {
-      least = any ? std::min(least, length) : length;
-    };
-    shortest(lengths.shortest_lead, run.main_begin);
-    shortest(lengths.shortest_tail, tail);
-    shortest(lengths.shortest_main, main);
-    lengths.longest_main = std::max(lengths.longest_main, main);
-    any = true;
+    if (!known) known = {run.main_begin, tail, main, main};
+    known->shortest_lead = std::min(known->shortest_lead, run.main_begin);
+    known->shortest_tail = std::min(known->shortest_tail, tail);
+    known->shortest_main = std::min(known->shortest_main, main);
+    known->longest_main = std::max(known->longest_main, main);
   }
-  return lengths;
+  return known.value_or(Lengths{});
 }
 
 /// (n_sensors) 1 where all bits of a part (n_rows x n_sensors) before or after the main one are known, and as many as

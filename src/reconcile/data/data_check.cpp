@@ -75,13 +75,9 @@ std::vector<DatasetRows> datasets_of(std::span<const Series> pilot, std::size_t 
   return datasets;
 }
 
-// Columns that no sensor's output is like.
-
 constexpr std::size_t fewest_beats = 12;  ///< in a run: what sweeps to and fro keeps to a grid of rows for a while
 
 // Two columns: rows in which one of them changes, and those in which both do.
-
-enum class Likeness { equal, opposite };
 
 struct Edges {
   std::size_t n = 0, n_alike = 0;
@@ -90,7 +86,7 @@ struct Edges {
   }
 };
 
-Edges edges_of(const DatasetRows& data, std::size_t one, std::size_t other, Likeness likeness) {
+Edges edges_of(const DatasetRows& data, std::size_t one, std::size_t other, What what) {
   Edges edges;
   for (const Series& run : data.runs) {
     for (std::size_t row = 1; row < run.n_rows(data.n_sensors); ++row) {
@@ -101,7 +97,7 @@ Edges edges_of(const DatasetRows& data, std::size_t one, std::size_t other, Like
       if (std::max({a, b, a_before, b_before}) == unknown_bit || (a == a_before && b == b_before)) continue;
       ++edges.n;
       const bool both = a != a_before && b != b_before;
-      edges.n_alike += both && (a == b) == (likeness == Likeness::equal) ? 1 : 0;
+      edges.n_alike += both && (a == b) == (what == What::equal_columns) ? 1 : 0;
     }
   }
   return edges;
@@ -118,13 +114,12 @@ void compare_columns(const StudyFrame& frame, const DatasetRows& data, std::span
                      std::vector<DataFinding>& findings) {
   for (std::size_t other = 1; other < data.n_sensors; ++other) {
     for (std::size_t one = 0; one < other; ++one) {
-      for (const auto& [likeness, what] :
-           {std::pair(Likeness::equal, What::equal_columns), std::pair(Likeness::opposite, What::opposite_columns)}) {
-        const Edges edges = edges_of(data, one, other, likeness);
+      for (const What what : {What::equal_columns, What::opposite_columns}) {
+        const Edges edges = edges_of(data, one, other, what);
         const auto n_unlike = static_cast<double>(edges.n - edges.n_alike);
         if (edges.n < fewest_edges || n_unlike > may_differ * static_cast<double>(edges.n)) continue;
         const double usual =
-            greatest_of(pilot, [&](const DatasetRows& d) { return edges_of(d, one, other, likeness).share(); });
+            greatest_of(pilot, [&](const DatasetRows& d) { return edges_of(d, one, other, what).share(); });
         const double chance = log_chance(edges, usual);
         if (chance > log_level) continue;
         findings.push_back({.what = what,
@@ -396,8 +391,6 @@ class RepeatFinder {
   Repeats found_;
 };
 
-Repeats greatest_repeats(const DatasetRows& data) { return RepeatFinder(data).find(); }
-
 // Rows of all sensors together that no logger hears.
 
 constexpr double beyond_model = 1.5;          ///< times as much as any of the model's runs has (assumed)
@@ -498,7 +491,7 @@ DataFinding::Rows place(const StudyFrame& frame, const Series& run, std::size_t 
 /// single run, it is merely odd.
 void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                  const WholeDatasets& periodic, std::vector<DataFinding>& findings) {
-  const Repeats repeats = greatest_repeats(data);
+  const Repeats repeats = RepeatFinder(data).find();
   std::optional<std::vector<std::vector<Series>>> whole;
   for (const auto which : {&Repeats::between_runs, &Repeats::in_a_run}) {
     const std::vector<Repeat>& own = repeats.*which;
@@ -509,7 +502,7 @@ void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<con
     if (chance > log_level) continue;
     const double third = own.size() == Repeats::most ? own.back().information : 0.0;
     const auto repeated_in = [&](const DatasetRows& d) {
-      const Repeats simulated = greatest_repeats(d);
+      const Repeats simulated = RepeatFinder(d).find();
       return (simulated.*which).empty() ? 0.0 : (simulated.*which).front().information;
     };
     if (repeat.information < beyond_model * std::max(greatest_of(pilot, repeated_in), third)) continue;
@@ -528,103 +521,82 @@ void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<con
   }
 }
 
-/// Rows without any motion between two with some.
-struct Gap {
+/// Rows without any motion between two with some: of a run, the longest.
+struct Silence {
   std::size_t run = 0, row = 0, n_rows = 0;
+  std::size_t n_gaps = 0;    ///< in the run
+  double times_usual = 0.0;  ///< as long as the mean of the other gaps; 0 where these are few
 };
 
-std::vector<Gap> gaps_of(const DatasetRows& data, std::size_t number) {
+Silence silence_of(const DatasetRows& data, std::size_t number) {
   const Series& run = data.runs[number];
-  std::vector<Gap> gaps;
+  Silence longest{number};
   std::size_t after_last = 0;  // row after the last one with motion; 0: none, or unknown rows since
+  double sum = 0.0;
   for (std::size_t row = 0; row < run.n_rows(data.n_sensors); ++row) {
     const auto bits = std::span(run.bits).subspan(row * data.n_sensors, data.n_sensors);
     if (std::ranges::find(bits, unknown_bit) != bits.end()) after_last = 0;
     if (std::ranges::find(bits, 1) == bits.end()) continue;
-    if (after_last > 0 && row > after_last) gaps.push_back({number, after_last, row - after_last});
+    const std::size_t n_rows = after_last > 0 ? row - after_last : 0;
+    sum += static_cast<double>(n_rows);
+    longest.n_gaps += n_rows > 0 ? 1 : 0;
+    if (n_rows > longest.n_rows) longest = {number, after_last, n_rows, longest.n_gaps};
     after_last = row + 1;
   }
-  return gaps;
+  if (longest.n_gaps <= fewest_gaps) return longest;
+  const auto length = static_cast<double>(longest.n_rows);
+  longest.times_usual = length / std::max(1.0, (sum - length) / static_cast<double>(longest.n_gaps - 1));
+  return longest;
 }
 
-/// Of the run in which it is longest, measured by the mean of the other gaps.
-struct Silence {
-  Gap gap;
-  double times_usual = 0.0;
-  std::size_t n_gaps = 0;  ///< in the dataset
-};
-
-Silence greatest_silence(const DatasetRows& data) {
-  Silence greatest;
-  std::size_t n_gaps = 0;
-  for (std::size_t number = 0; number < data.runs.size(); ++number) {
-    const std::vector<Gap> gaps = gaps_of(data, number);
-    n_gaps += gaps.size();
-    if (gaps.size() <= fewest_gaps) continue;
-    const Gap& longest = *std::ranges::max_element(gaps, {}, &Gap::n_rows);
-    double sum = 0.0;
-    for (const Gap& gap : gaps) sum += static_cast<double>(gap.n_rows);
-    const auto length = static_cast<double>(longest.n_rows);
-    const double times = length / std::max(1.0, (sum - length) / static_cast<double>(gaps.size() - 1));
-    if (times > greatest.times_usual) greatest = {longest, times, 0};
-  }
-  greatest.n_gaps = n_gaps;
-  return greatest;
+std::vector<Silence> silences_of(const DatasetRows& data) {
+  std::vector<Silence> all;
+  for (std::size_t number = 0; number < data.runs.size(); ++number) all.push_back(silence_of(data, number));
+  return all;
 }
 
-/// If gaps end by chance, none is so long among so many.
-std::optional<DataFinding> impossible_silence(const StudyFrame& frame, const DatasetRows& data,
-                                              std::span<const DatasetRows> pilot) {
-  const Silence silence = greatest_silence(data);
-  if (silence.n_gaps == 0) return std::nullopt;
-  const double chance = std::log(static_cast<double>(silence.n_gaps)) - silence.times_usual;
-  if (chance > log_level) return std::nullopt;
-  const double usual = greatest_of(pilot, [](const DatasetRows& d) { return greatest_silence(d).times_usual; });
-  if (silence.times_usual < beyond_model * usual) return std::nullopt;
-  const Gap& gap = silence.gap;
-  return DataFinding{.what = What::all_silent,
-                     .places = {place(frame, data.runs[gap.run], gap.row, gap.n_rows)},
-                     .n_rows = gap.n_rows,
-                     .chance = std::exp(chance)};
-}
-
-/// Longer than in any of the model's runs of that trial: where sensors see less than in the model, that is no fault of
-/// the file.
-std::optional<DataFinding> odd_silence(const StudyFrame& frame, const DatasetRows& data,
-                                       std::span<const DatasetRows> pilot) {
-  Gap greatest;
-  double most = 1.0;
-  for (std::size_t number = 0; number < data.runs.size(); ++number) {
-    const std::vector<Gap> gaps = gaps_of(data, number);
-    if (gaps.empty()) continue;
-    const Gap& longest = *std::ranges::max_element(gaps, {}, &Gap::n_rows);
-    const double usual = greatest_of(pilot, [&](const DatasetRows& d) {
-      std::size_t longest_there = 0;
-      for (std::size_t i = 0; i < d.runs.size(); ++i) {
-        if (d.runs[i].trial != data.runs[number].trial) continue;
-        for (const Gap& gap : gaps_of(d, i)) longest_there = std::max(longest_there, gap.n_rows);
-      }
-      return static_cast<double>(longest_there);
-    });
-    if (pilot.empty() || longest.n_rows < shortest_silence) continue;
-    const double times = static_cast<double>(longest.n_rows) / (beyond_model * std::max(1.0, usual));
-    if (times > most) {
-      most = times;
-      greatest = longest;
-    }
-  }
-  if (greatest.n_rows == 0) return std::nullopt;
-  return DataFinding{.what = What::all_silent,
-                     .places = {place(frame, data.runs[greatest.run], greatest.row, greatest.n_rows)},
-                     .n_rows = greatest.n_rows,
-                     .is_impossible = false};
-}
-
+/// Impossible if gaps end by chance and none is so long among so many; odd if it is longer than in any of the model's
+/// runs of that trial: where sensors see less than in the model, that is no fault of the file.
 void find_silence(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
                   std::vector<DataFinding>& findings) {
-  std::optional<DataFinding> found = impossible_silence(frame, data, pilot);
-  if (!found) found = odd_silence(frame, data, pilot);
-  if (found) findings.push_back(std::move(*found));
+  const std::vector<Silence> silences = silences_of(data);
+  if (silences.empty()) return;
+  const auto add = [&](const Silence& silence, double chance, bool is_impossible) {
+    findings.push_back({.what = What::all_silent,
+                        .places = {place(frame, data.runs[silence.run], silence.row, silence.n_rows)},
+                        .n_rows = silence.n_rows,
+                        .chance = chance,
+                        .is_impossible = is_impossible});
+  };
+  const auto times_usual = [](const DatasetRows& d) {
+    double most = 0.0;
+    for (const Silence& silence : silences_of(d)) most = std::max(most, silence.times_usual);
+    return most;
+  };
+  double n_gaps = 0.0;
+  for (const Silence& silence : silences) n_gaps += static_cast<double>(silence.n_gaps);
+  const Silence& greatest = *std::ranges::max_element(silences, {}, &Silence::times_usual);
+  const double chance = std::log(n_gaps) - greatest.times_usual;
+  if (n_gaps > 0.0 && chance <= log_level && greatest.times_usual >= beyond_model * greatest_of(pilot, times_usual))
+    return add(greatest, std::exp(chance), true);
+
+  const Silence* longest = nullptr;
+  double most = 1.0;
+  for (const Silence& silence : silences) {
+    if (pilot.empty() || silence.n_rows < shortest_silence) continue;
+    const double usual = greatest_of(pilot, [&](const DatasetRows& d) {
+      std::size_t there = 0;
+      for (const Silence& one : silences_of(d)) {
+        if (d.runs[one.run].trial == data.runs[silence.run].trial) there = std::max(there, one.n_rows);
+      }
+      return static_cast<double>(there);
+    });
+    const double times = static_cast<double>(silence.n_rows) / (beyond_model * std::max(1.0, usual));
+    if (times <= most) continue;
+    most = times;
+    longest = &silence;
+  }
+  if (longest != nullptr) add(*longest, 0.0, false);
 }
 
 }  // namespace

@@ -499,43 +499,36 @@ class MeasuredReader {
   /// Rows follow each other as the reader of rows wants it; their clock may say otherwise.
   [[nodiscard]] bool check_times(const std::vector<ReadRow>& rows) {
     const double first_s = rows.front().time_s;
-    if (frame_.counted_phases.empty() && !(first_s >= 0.0 && first_s <= most_missing_rows * frame_.window_s)) {
-      repeated_.add("begin", rows.front().where,
-                    "time_s counts from the beginning of the trial; this one " + std::string("begins with ") +
-                        io::csv_number(first_s));
+    const auto refuse = [&](const char* kind, const ReadRow& row, const std::string& why) {
+      repeated_.add(kind, row.where, why);
       return false;
-    }
-    if (rows.size() > 1 && std::abs(step_s_ - frame_.window_s) > 1e-6 * frame_.window_s) {
-      repeated_.add("window", rows.front().where,
+    };
+    if (frame_.counted_phases.empty() && !(first_s >= 0.0 && first_s <= most_missing_rows * frame_.window_s))
+      return refuse("begin", rows.front(),
+                    "time_s counts from the beginning of the trial; this one begins with " + io::csv_number(first_s));
+    if (rows.size() > 1 && std::abs(step_s_ - frame_.window_s) > 1e-6 * frame_.window_s)
+      return refuse("window", rows.front(),
                     "rows are " + io::csv_number(step_s_) + " s apart, the script's window is " +
                         io::csv_number(frame_.window_s) + " s");
-      return false;
-    }
     for (std::size_t i = 1; i < rows.size(); ++i) {
       const double windows = (rows[i].time_s - rows[i - 1].time_s) / frame_.window_s;
-      if (windows > 0.5 && windows <= most_missing_rows) continue;
-      const bool is_gap = windows > 0.5;
-      repeated_.add(is_gap ? "gap" : "order", rows[i].where,
-                    is_gap ? "this row comes " + io::csv_number(std::round(windows)) +
-                                 " windows after the one before: too long a gap"
-                           : "time doesn't grow: this row isn't later than the one before");
-      return false;
+      if (windows <= 0.5)
+        return refuse("order", rows[i], "time doesn't grow: this row isn't later than the one before");
+      if (windows > most_missing_rows)
+        return refuse(
+            "gap", rows[i],
+            "this row comes " + io::csv_number(std::round(windows)) + " windows after the one before: too long a gap");
     }
     return true;
   }
 
   void mark_main(Series& series, const std::vector<ReadRow>& rows, const std::vector<std::size_t>& places) {
-    const std::size_t n_rows = places.back() + 1;
-    series.main_end = n_rows;
-    if (!tells_phases_) return;
-    bool begun = false;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
+    series.main_end = tells_phases_ ? 0 : places.back() + 1;
+    for (std::size_t i = 0; tells_phases_ && i < rows.size(); ++i) {
       if (!rows[i].is_counted) continue;
-      if (!begun) series.main_begin = places[i];
-      begun = true;
+      if (series.main_end == 0) series.main_begin = places[i];
       series.main_end = places[i] + 1;
     }
-    if (!begun) series.main_end = 0;
   }
 
   /// From 1 in every trial, as simulated runs are: numbers may begin anywhere and have gaps.
@@ -543,35 +536,28 @@ class MeasuredReader {
     std::map<std::size_t, std::set<int>> known;  // of a trial
     for (const Series& run : measured_.runs) known[run.trial].insert(run.replicate);
     for (const Measured::Sum& sum : measured_.sums) known[sum.trial].insert(sum.replicate);
-    std::map<RunKey, int> ranks;
-    for (const auto& [trial, numbers] : known) {
-      int rank = 0;
-      for (const int number : numbers) ranks[{trial, number}] = ++rank;
-    }
-    const auto rank = [&](std::size_t trial, int replicate) { return ranks.at({trial, replicate}); };
-    for (Series& run : measured_.runs) run.replicate = rank(run.trial, run.replicate);
-    for (Measured::Sum& sum : measured_.sums) sum.replicate = rank(sum.trial, sum.replicate);
+    const auto number = [&](auto& one) {
+      const std::set<int>& all = known[one.trial];
+      one.replicate = 1 + static_cast<int>(std::distance(all.begin(), all.find(one.replicate)));
+    };
+    std::ranges::for_each(measured_.runs, number);
+    std::ranges::for_each(measured_.sums, number);
   }
 
   void refuse_too_little() {
-    if (measured_.kind == Measured::Kind::sums) {
-      if (measured_.sums.size() >= fewest_cells) return;
-      throw Error(
-          ErrorCode::input, {file_, 0, 0},
-          "too little data: " + counted(measured_.sums.size(), "sum") + ", needed are " + std::to_string(fewest_cells));
-    }
-    std::size_t known = 0;
+    const bool has_sums = measured_.kind == Measured::Kind::sums;
+    const std::size_t n = frame_.sensors.size(), needed = has_sums ? fewest_cells : fewest_rows;
+    std::size_t known = measured_.sums.size();
     for (const Series& run : measured_.runs) {
-      const std::size_t n = frame_.sensors.size();
       for (std::size_t row = run.main_begin; row < run.main_end; ++row) {
-        const auto first = run.bits.begin() + static_cast<std::ptrdiff_t>(row * n);
-        known +=
-            std::any_of(first, first + static_cast<std::ptrdiff_t>(n), [](auto b) { return b != unknown_bit; }) ? 1 : 0;
+        const auto bits = std::span(run.bits).subspan(row * n, n);
+        known += std::ranges::any_of(bits, [](auto bit) { return bit != unknown_bit; }) ? 1 : 0;
       }
     }
-    if (known >= fewest_rows) return;
+    if (known >= needed) return;
     throw Error(ErrorCode::input, {file_, 0, 0},
-                "too little data: " + counted(known, "row") + " to compare, needed are " + std::to_string(fewest_rows));
+                "too little data: " + counted(known, has_sums ? "sum" : "row") + (has_sums ? "" : " to compare") +
+                    ", needed are " + std::to_string(needed));
   }
 
   /// Notes what was done with the rows.

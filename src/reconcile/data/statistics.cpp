@@ -76,7 +76,7 @@ class TrialStatistics {
   void add(const Series& run, const DataShape::Run& shape, Measured::Kind kind) {
     const std::vector<std::uint8_t> bits = main_bits(run, shape, frame_.sensors.size());
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      if (!knows(shape, sensor)) continue;
+      if (!knows_main_part(shape, sensor, frame_.sensors.size())) continue;
       add_cell(run, shape, bits, sensor);
       lead_known_[sensor] &= shape.lead_known[sensor];
       tail_known_[sensor] &= shape.tail_known[sensor];
@@ -108,9 +108,6 @@ class TrialStatistics {
   }
 
  private:
-  [[nodiscard]] bool knows(const DataShape::Run& shape, std::size_t sensor) const {
-    return knows_main_part(shape, sensor, frame_.sensors.size());
-  }
   [[nodiscard]] bool known(std::size_t sensor, CellStatistic statistic, Measured::Kind kind) const {
     if (statistic == CellStatistic::run_variance) return seconds_[sensor].size() > 1;
     if (statistic == CellStatistic::seconds) return true;
@@ -401,14 +398,10 @@ double shift_rows(const BitSeries& series, double window_s) {
 }  // namespace
 
 std::string name(CellStatistic statistic) {
-  const auto index = static_cast<std::size_t>(statistic);
   if (statistic == CellStatistic::shift_s) return "shift_s";
-  return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
+  return std::string(cell_names.at(static_cast<std::size_t>(statistic)));
 }
-std::string name(TrialStatistic statistic) {
-  const auto index = static_cast<std::size_t>(statistic);
-  return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);
-}
+std::string name(TrialStatistic statistic) { return std::string(trial_names.at(static_cast<std::size_t>(statistic))); }
 
 std::size_t n_statistics(const StudyFrame& frame) noexcept {
   return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));

@@ -86,6 +86,7 @@ enum class TrialStatistic : std::uint8_t {
 };
 inline constexpr std::size_t n_cell_statistics = static_cast<std::size_t>(CellStatistic::count);
 inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(TrialStatistic::count);
+/// Of those that are told as they are, not of parts of the time.
 [[nodiscard]] std::string name(CellStatistic statistic);
 [[nodiscard]] std::string name(TrialStatistic statistic);
 

@@ -164,15 +164,6 @@ void change_electronics(Realization& realization, const Draw& draw) {
   });
 }
 
-/// Who is there is known, when exactly they come and where they sit is not.
-void change_presence(const SceneSpec& scene, ScriptSpec& script, const Draw& draw) {
-  for (std::uint32_t i = 0; i < script.trials.size(); ++i) {
-    if (!script.trials[i].occupancy) continue;
-    Stream stream = draw.stream(Entity::presence + i, Purpose::nuisance);
-    draw_presence(scene, draw.nuisance, stream, *script.trials[i].occupancy);
-  }
-}
-
 /// Runs of these trials; of all if none are given.
 std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size_t> trials) {
   std::vector<std::uint32_t> runs;
@@ -181,12 +172,6 @@ std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size
     if (trials.empty() || std::ranges::find(trials, run % n_trials) != trials.end()) runs.push_back(run);
   }
   return runs;
-}
-
-void add_series(const StudyFrame& frame, const RunResult& result, int first, std::vector<Series>& data) {
-  if (result.samples.empty()) return;
-  auto series = series_of(frame, result.replicate - first, result.samples.front().trial, result.samples);
-  if (series) data.push_back(std::move(*series));
 }
 
 /// All effects. What the script has is never looked for again, so one of the same name is the nuisance's, and gives
@@ -236,7 +221,11 @@ Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, c
   change_people(realization.script, draw);
   move_otherwise(realization.script, draw);
   change_electronics(realization, draw);
-  change_presence(scene, realization.script, draw);
+  for (std::uint32_t i = 0; i < script.trials.size(); ++i) {  // who is there is known, when and where exactly is not
+    if (!script.trials[i].occupancy) continue;
+    Stream stream = draw.stream(Entity::presence + i, Purpose::nuisance);
+    draw_presence(scene, nuisance, stream, *realization.script.trials[i].occupancy);
+  }
   realization.script.seed = seed_of(draw);
   return realization;
 }
@@ -267,7 +256,10 @@ struct SimulatedRealization::Traced {
       for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
         const int replicate = tracks.runs[i].rows.replicate;
         if (replicate <= first || replicate > first + n) continue;
-        add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
+        const RunResult result = sim::replay(tracks, i, *logic, model.script().seed, pipeline);
+        if (result.samples.empty()) continue;
+        auto series = series_of(frame, result.replicate - first, result.samples.front().trial, result.samples);
+        if (series) data.push_back(std::move(*series));
       }
       return in_day_parts(frame, std::move(data));
     }
@@ -304,12 +296,13 @@ SimulatedRealization::SimulatedRealization(const RealizationSource& source, cons
 }
 
 SimulatedRealization::~SimulatedRealization() = default;
-SimulatedRealization::SimulatedRealization(SimulatedRealization&&) noexcept = default;
-SimulatedRealization& SimulatedRealization::operator=(SimulatedRealization&&) noexcept = default;
 
 std::optional<std::vector<Series>> SimulatedRealization::with(std::span<const EffectSpec> more, int first,
                                                               int n) const {
-  if (!acts_on_remembered_zones(more)) return std::nullopt;
+  const auto moves_rays = [](const EffectSpec& effect) {
+    return effects::find(effect.name).info.reach == effects::Reach::geometry;
+  };
+  if (std::ranges::any_of(more, moves_rays)) return std::nullopt;
   const effects::Pipeline stages = sim::make_stages(traced_->model, together(realization_.script.effects, more));
   const Recording& tracks = traced_->family.first();
   const bool far_enough = std::ranges::all_of(
@@ -344,12 +337,6 @@ std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<
     if (error.code() != ErrorCode::infeasible) throw;
     return std::nullopt;
   }
-}
-
-bool acts_on_remembered_zones(std::span<const EffectSpec> effects) {
-  return std::ranges::all_of(effects, [](const EffectSpec& effect) {
-    return effects::find(effect.name).info.reach != effects::Reach::geometry;
-  });
 }
 
 }  // namespace pirsim::reconcile

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "model/core/parallel.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/occupancy.hpp"
 #include "pirsim/random.hpp"
@@ -66,10 +67,6 @@ class SimulatedRealization {
   /// Traces n_runs runs of every trial. Throws Error(infeasible) if no attempt gives a realization to get about in.
   SimulatedRealization(const RealizationSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs);
   ~SimulatedRealization();
-  SimulatedRealization(SimulatedRealization&&) noexcept;
-  SimulatedRealization& operator=(SimulatedRealization&&) noexcept;
-  SimulatedRealization(const SimulatedRealization&) = delete;
-  SimulatedRealization& operator=(const SimulatedRealization&) = delete;
 
   [[nodiscard]] const Realization& drawn() const noexcept { return realization_; }
   /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
@@ -91,7 +88,12 @@ class SimulatedRealization {
   std::unique_ptr<Traced> traced_;
 };
 
-/// True if all these effects act on what remembered zones trigger, so that with_effects() is cheap.
-[[nodiscard]] bool acts_on_remembered_zones(std::span<const EffectSpec> effects);
+/// Results of make(i) for i in [0, n), in order.
+template <typename Result, typename Make>
+[[nodiscard]] std::vector<Result> in_parallel(std::size_t n, unsigned threads, const Make& make) {
+  std::vector<Result> all;
+  ordered_parallel<Result>(n, threads, make, [&](Result& one) { all.push_back(std::move(one)); });
+  return all;
+}
 
 }  // namespace pirsim::reconcile

@@ -1,12 +1,15 @@
 #include "reconcile/ensemble/reference_table.hpp"
 
 #include <algorithm>
-#include <fstream>
+#include <bit>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include "engine/effects/catalogue.hpp"
 #include "files/disk/file.hpp"
 #include "model/core/parallel.hpp"
+#include "model/core/random.hpp"
 #include "model/schema/fingerprint.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/version.hpp"
@@ -92,81 +95,125 @@ void add(Fingerprint& print, const TableSettings& settings) {
   }
 }
 
-constexpr std::string_view kind = "pirsim reference table";
-constexpr std::uint32_t format = 3;
 constexpr std::uint32_t items_per_chunk = 25;
 
-void write(BinaryWriter& out, const EffectSpec& effect) {
-  out.write(std::string_view(effect.name));
-  out.write(static_cast<std::uint32_t>(effect.parameters.size()));
-  for (const auto& [name, value] : effect.parameters) {
-    out.write(std::string_view(name));
-    out.write(value);
+// A chunk on disk: its table's key and its number, then everything in it, then the digest of all that. Numbers lie as
+// in memory; texts and lists come after their size. The same lines write and read.
+
+static_assert(std::endian::native == std::endian::little, "the byte order of the format is that of the machine");
+
+struct Packing {
+  static constexpr bool reads = false;
+  std::string bytes;
+  void raw(const void* from, std::size_t n) { bytes.append(static_cast<const char*>(from), n); }
+};
+
+struct Unpacking {
+  static constexpr bool reads = true;
+  std::string_view bytes;
+  void raw(void* to, std::size_t n) {
+    if (n > bytes.size()) throw Error(ErrorCode::input, "the reference table ends too early");
+    bytes.copy(static_cast<char*>(to), n);
+    bytes.remove_prefix(n);
   }
-  out.write(static_cast<std::uint32_t>(effect.choices.size()));
-  for (const auto& [name, value] : effect.choices) {
-    out.write(std::string_view(name));
-    out.write(std::string_view(value));
+};
+
+/// A number as another kind of number on disk.
+template <typename Stored, typename Bytes, typename Number>
+void pass_as(Bytes& bytes, Number& number) {
+  auto stored = static_cast<Stored>(number);
+  bytes.raw(&stored, sizeof stored);
+  if constexpr (Bytes::reads) number = static_cast<Number>(stored);
+}
+
+/// Reading, the list gets that size.
+template <typename Bytes, typename List>
+void pass_size(Bytes& bytes, List& list) {
+  auto n = static_cast<std::uint32_t>(list.size());
+  pass_as<std::uint32_t>(bytes, n);
+  if constexpr (Bytes::reads) list.resize(n);
+}
+
+template <typename Bytes, typename Text>
+void pass_text(Bytes& bytes, Text& text) {
+  pass_size(bytes, text);
+  bytes.raw(text.data(), text.size());
+}
+
+template <typename Bytes, typename Map, typename Pass>
+void pass_named(Bytes& bytes, Map& map, const Pass& pass_value) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : map) names.push_back(name);
+  pass_size(bytes, names);
+  for (std::string& name : names) {
+    pass_text(bytes, name);
+    if constexpr (Bytes::reads) map[name];
+    pass_value(map.find(name)->second);
   }
 }
 
-EffectSpec read_effect(BinaryReader& in) {
-  EffectSpec effect;
-  effect.name = in.read_text();
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    const std::string name = in.read_text();
-    effect.parameters[name] = in.read<double>();
-  }
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    const std::string name = in.read_text();
-    effect.choices[name] = in.read_text();
-  }
-  return effect;
+template <typename Bytes, typename Effect>
+void pass_effect(Bytes& bytes, Effect& effect) {
+  pass_text(bytes, effect.name);
+  pass_named(bytes, effect.parameters, [&](auto& value) { pass_as<double>(bytes, value); });
+  pass_named(bytes, effect.choices, [&](auto& word) { pass_text(bytes, word); });
 }
 
 /// Eight bits a byte; simulated data know all of them.
-void write(BinaryWriter& out, const Series& run) {
-  out.write(static_cast<std::uint32_t>(run.trial));
-  out.write(static_cast<std::int32_t>(run.replicate));
-  for (const std::size_t n : {run.main_begin, run.main_end, run.bits.size()}) out.write(static_cast<std::uint32_t>(n));
-  std::vector<std::uint8_t> packed((run.bits.size() + 7) / 8, 0);
-  for (std::size_t i = 0; i < run.bits.size(); ++i) {
-    if (run.bits[i] == 1) packed[i / 8] = static_cast<std::uint8_t>(packed[i / 8] | 1U << i % 8);
+template <typename Bytes, typename Run>
+void pass_run(Bytes& bytes, Run& run) {
+  for (auto* number : {&run.trial, &run.main_begin, &run.main_end}) pass_as<std::uint32_t>(bytes, *number);
+  pass_as<std::int32_t>(bytes, run.replicate);
+  pass_size(bytes, run.bits);
+  for (std::size_t first = 0; first < run.bits.size(); first += 8) {
+    const auto eight = std::span(run.bits).subspan(first, std::min<std::size_t>(8, run.bits.size() - first));
+    unsigned packed = 0;
+    for (std::size_t i = 0; i < eight.size(); ++i) packed |= (eight[i] == 1 ? 1U : 0U) << i;
+    pass_as<std::uint8_t>(bytes, packed);
+    if constexpr (Bytes::reads) {
+      for (std::size_t i = 0; i < eight.size(); ++i) eight[i] = packed >> i & 1U;
+    }
   }
-  out.write(packed);
 }
 
-Series read_series(BinaryReader& in) {
-  Series run;
-  run.trial = in.read<std::uint32_t>();
-  run.replicate = in.read<std::int32_t>();
-  run.main_begin = in.read<std::uint32_t>();
-  run.main_end = in.read<std::uint32_t>();
-  const auto n = in.read<std::uint32_t>();
-  const auto packed = in.read_vector<std::uint8_t>();
-  if (packed.size() != (n + 7U) / 8U)
-    throw Error(ErrorCode::input, std::string(kind) + " is damaged: an impossible size");
-  run.bits.reserve(n);
-  for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
-  return run;
+template <typename Bytes, typename Chunk>
+void pass_chunk(Bytes& bytes, Chunk& chunk) {
+  pass_as<std::uint32_t>(bytes, chunk.n_left_out);
+  pass_size(bytes, chunk.datasets);
+  for (auto& [row, runs] : chunk.datasets) {
+    for (auto* number : {&row.hypothesis, &row.realization}) pass_as<std::uint32_t>(bytes, *number);
+    pass_size(bytes, row.effects);
+    for (auto& effect : row.effects) pass_effect(bytes, effect);
+    pass_size(bytes, runs);
+    for (auto& run : runs) pass_run(bytes, run);
+  }
 }
 
-TableChunk read_chunk(std::istream& stream, const std::string& key, std::uint32_t number) {
-  BinaryReader in(stream, kind, format);
-  if (in.read_text() != key) throw Error(ErrorCode::input, std::string(kind) + " is of other inputs or settings");
-  if (in.read<std::uint32_t>() != number)
-    throw Error(ErrorCode::input, std::string(kind) + " is of other realizations");
+/// With whose chunk it is.
+std::string packed(const TableChunk& chunk, const std::string& key, std::uint32_t number) {
+  Packing bytes;
+  pass_text(bytes, key);
+  pass_as<std::uint32_t>(bytes, number);
+  pass_chunk(bytes, chunk);
+  return bytes.bytes + sha256(bytes.bytes);
+}
+
+/// Throws Error(input) for what isn't this chunk, whole.
+TableChunk unpacked(std::string_view text, const std::string& key, std::uint32_t number) {
+  constexpr std::size_t digest_size = 64;
+  Unpacking bytes{text.substr(0, text.size() - std::min(text.size(), digest_size))};
+  const auto fail = [](const char* why) {
+    throw Error(ErrorCode::input, std::string("pirsim reference table ") + why);
+  };
+  if (sha256(bytes.bytes) != text.substr(bytes.bytes.size())) fail("is damaged: its digest differs");
+  std::string found_key;
+  std::uint32_t found_number = 0;
+  pass_text(bytes, found_key);
+  if (found_key != key) fail("is of other inputs or settings");
+  pass_as<std::uint32_t>(bytes, found_number);
+  if (found_number != number) fail("is of other realizations");
   TableChunk chunk;
-  chunk.n_left_out = in.read<std::uint32_t>();
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    SimulatedDataset dataset;
-    dataset.row.hypothesis = in.read<std::uint32_t>();
-    dataset.row.realization = in.read<std::uint32_t>();
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
-    chunk.datasets.push_back(std::move(dataset));
-  }
-  in.finish();
+  pass_chunk(bytes, chunk);
   return chunk;
 }
 
@@ -179,23 +226,16 @@ void keep_meaningful(const RealizationSource& source, std::vector<std::string>& 
   });
 }
 
-void append(TableChunk& chunk, TableChunk& more) {
-  chunk.n_left_out += more.n_left_out;
-  std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
-}
-
 }  // namespace
 
 std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame, std::uint32_t n_realizations,
                                const Context& context) {
   std::vector<Series> all;
-  ordered_parallel<std::vector<Series>>(
-      n_realizations, context.threads,
-      [&](std::size_t i) {
-        return SimulatedRealization(source, frame, first_pilot_realization + static_cast<std::uint32_t>(i), 1)
-            .plain(0, 1);
-      },
-      [&](std::vector<Series>& runs) { std::ranges::move(runs, std::back_inserter(all)); });
+  const auto runs_of = [&](std::size_t i) {
+    return SimulatedRealization(source, frame, first_pilot_realization + static_cast<std::uint32_t>(i), 1).plain(0, 1);
+  };
+  for (auto& runs : in_parallel<std::vector<Series>>(n_realizations, context.threads, runs_of))
+    std::ranges::move(runs, std::back_inserter(all));
   return all;
 }
 
@@ -208,14 +248,12 @@ std::vector<std::vector<Series>> surroundings_pilot(const RealizationSource& sou
   }
   keep_meaningful(source, settings.effects);
   std::vector<std::vector<Series>> all;
-  ordered_parallel<TableChunk>(
-      n_realizations, context.threads,
-      [&](std::size_t i) {
-        return simulate_datasets(source, frame, n_replicates, settings, static_cast<std::uint32_t>(i));
-      },
-      [&](TableChunk& chunk) {
-        for (SimulatedDataset& dataset : chunk.datasets) all.push_back(std::move(dataset.runs));
-      });
+  const auto chunk_of = [&](std::size_t i) {
+    return simulate_datasets(source, frame, n_replicates, settings, static_cast<std::uint32_t>(i));
+  };
+  for (TableChunk& chunk : in_parallel<TableChunk>(n_realizations, context.threads, chunk_of)) {
+    for (SimulatedDataset& dataset : chunk.datasets) all.push_back(std::move(dataset.runs));
+  }
   return all;
 }
 
@@ -236,12 +274,13 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
   TableStore store(folder, table.key);
   table.effects = settings.effects;
   table.profile = profile;
-  table.n_realizations = settings.n_realizations;
   for_each_chunk(
       store, settings.n_realizations, context,
       [&](std::uint32_t index) { return simulate_datasets(source, frame, shape.n_replicates, settings, index); },
       [&](TableChunk& chunk) {
-        append_statistics(frame, shape, profile, chunk, context.threads, table.statistics);
+        const auto row_of = [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); };
+        for (const auto& row : in_parallel<std::vector<float>>(chunk.datasets.size(), context.threads, row_of))
+          table.statistics.append_row(row);
         for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
         table.n_left_out += chunk.n_left_out;
       });
@@ -299,9 +338,8 @@ std::filesystem::path TableStore::file(std::uint32_t number) const {
 
 std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
   if (!there_.contains(file(number).filename()) || !std::filesystem::exists(file(number))) return std::nullopt;
-  std::ifstream stream(file(number), std::ios::binary);
   try {
-    return read_chunk(stream, key_, number);
+    return unpacked(io::read_text_file(file(number), std::numeric_limits<std::size_t>::max()), key_, number);
   } catch (const Error& error) {
     throw Error(ErrorCode::input, {file(number).string(), 0, 0},
                 error.issues().front().message + "; remove this file, and only its realizations are simulated again");
@@ -311,22 +349,7 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
 void TableStore::keep(std::uint32_t number, const TableChunk& chunk) {
   if (folder_.empty()) return;
   claim();
-  io::AtomicFile file_out(file(number));
-  BinaryWriter out(file_out.stream(), kind, format);
-  out.write(std::string_view(key_));
-  out.write(number);
-  out.write(chunk.n_left_out);
-  out.write(static_cast<std::uint32_t>(chunk.datasets.size()));
-  for (const SimulatedDataset& dataset : chunk.datasets) {
-    out.write(dataset.row.hypothesis);
-    out.write(dataset.row.realization);
-    out.write(static_cast<std::uint32_t>(dataset.row.effects.size()));
-    for (const EffectSpec& effect : dataset.row.effects) write(out, effect);
-    out.write(static_cast<std::uint32_t>(dataset.runs.size()));
-    for (const Series& run : dataset.runs) write(out, run);
-  }
-  out.finish();
-  file_out.commit();
+  io::write_text_file(file(number), packed(chunk, key_, number));
   const std::string name = file(number).filename();
   if (there_.insert(name).second) journal_->add(name);
 }
@@ -352,21 +375,14 @@ void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& con
       ordered_parallel<TableChunk>(
           n, context.threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
           [&](TableChunk& one) {
-            append(*chunk, one);
+            chunk->n_left_out += one.n_left_out;
+            std::ranges::move(one.datasets, std::back_inserter(chunk->datasets));
             tell(++n_there);
           });
       store.keep(first / items_per_chunk, *chunk);
     }
     use(*chunk);
   }
-}
-
-void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
-                       unsigned threads, stats::Matrix<float>& statistics) {
-  ordered_parallel<std::vector<float>>(
-      chunk.datasets.size(), threads,
-      [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); },
-      [&](std::vector<float>& row) { statistics.append_row(row); });
 }
 
 }  // namespace pirsim::reconcile

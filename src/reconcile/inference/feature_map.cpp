@@ -108,15 +108,11 @@ void FeatureMap::learn_scales(const stats::Matrix<float>& plain) {
   for_all_known(plain, [&](std::size_t i, double value) { mean[i] += value / rows[i]; });
   for_all_known(plain,
                 [&](std::size_t i, double value) { square[i] += (value - mean[i]) * (value - mean[i]) / rows[i]; });
-  const Statistics rows_with(frame_, std::span<const double>(rows));
-  for (std::size_t row = 0; row < plain.rows(); ++row) {
-    for_each_cell(frame_, [&](std::size_t trial, std::size_t sensor) {
-      const double seconds = seconds_of(DatasetStatistics(frame_, plain.row(row)), trial, sensor);
-      if (std::isnan(seconds)) return;
-      expected_log_[frame_.cell(trial, sensor)] +=
-          std::log1p(seconds) / rows_with.cell(trial, sensor, CellStatistic::seconds);
-    });
-  }
+  for_each_cell(frame_, [&](std::size_t trial, std::size_t sensor) {
+    const std::vector<double> seconds = seconds_of(frame_, plain, trial, sensor);
+    for (const double s : seconds)
+      expected_log_[frame_.cell(trial, sensor)] += std::log1p(s) / static_cast<double>(seconds.size());
+  });
   // A statistic that hardly varies in one cell must not drown the others: its scatter is at least a part of what the
   // same statistic has elsewhere.
   for (const std::vector<std::size_t>& places : alike_places(frame_)) {
@@ -188,16 +184,10 @@ std::vector<float> FeatureMap::features(std::span<const float> statistics) const
 }
 
 stats::Matrix<float> FeatureMap::features(const stats::Matrix<float>& statistics, unsigned threads) const {
-  stats::Matrix<float> all(statistics.rows(), names_.size());
-  constexpr std::size_t block = 256;
-  ordered_parallel<int>((statistics.rows() + block - 1) / block, threads,
-                        [&](std::size_t b) {
-                          for (std::size_t row = b * block; row < std::min(statistics.rows(), (b + 1) * block); ++row) {
-                            std::ranges::copy(features(statistics.row(row)), all.row(row).begin());
-                          }
-                          return 0;
-                        },
-                        [](int&) {});
+  stats::Matrix<float> all(0, names_.size());
+  ordered_parallel<std::vector<float>>(
+      statistics.rows(), threads, [&](std::size_t row) { return features(statistics.row(row)); },
+      [&](const std::vector<float>& one) { all.append_row(one); });
   return all;
 }
 
@@ -215,13 +205,15 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
   }
 }
 
-std::pair<double, double> FeatureMap::sum_over_trials(const Scaled& data, std::size_t sensor,
-                                                      CellStatistic statistic) const {
+std::pair<double, double> FeatureMap::sum_over(const Scaled& data, std::span<const std::size_t> trials,
+                                               std::span<const std::size_t> sensors, CellStatistic statistic) const {
   double sum = 0.0, count = 0.0;
-  for (const std::size_t trial : trials_) {
-    if (!known(trial, sensor, statistic)) continue;
-    sum += data.cell(trial, sensor, statistic);
-    count += 1.0;
+  for (const std::size_t trial : trials) {
+    for (const std::size_t sensor : sensors) {
+      if (!known(trial, sensor, statistic)) continue;
+      sum += data.cell(trial, sensor, statistic);
+      count += 1.0;
+    }
   }
   return {sum, count};
 }
@@ -230,7 +222,7 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
   for (const CellStatistic statistic : told_of_cells) {
     std::vector<double> means;
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      const auto [sum, count] = sum_over_trials(data, sensor, statistic);
+      const auto [sum, count] = sum_over(data, trials_, std::array{sensor}, statistic);
       if (count == 0.0) continue;
       means.push_back(sum / count);
       out.test_next();
@@ -248,12 +240,7 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
 void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
   for (const CellStatistic statistic : told_by_trial) {
     for (const std::size_t trial : trials_) {
-      double sum = 0.0, count = 0.0;
-      for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-        if (!known(trial, sensor, statistic)) continue;
-        sum += data.cell(trial, sensor, statistic);
-        count += 1.0;
-      }
+      const auto [sum, count] = sum_over(data, std::array{trial}, stats::numbers_to(frame_.sensors.size()), statistic);
       if (count == 0.0) continue;
       out.add(sum / count, [&] { return FeatureName{frame_.trials[trial] + " " + name(statistic)}; });
     }
@@ -280,7 +267,7 @@ void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
   const std::string statistic = name(CellStatistic::shift_s);
   double all = 0.0, n_all = 0.0;
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-    const auto [sum, count] = sum_over_trials(data, sensor, CellStatistic::shift_s);
+    const auto [sum, count] = sum_over(data, trials_, std::array{sensor}, CellStatistic::shift_s);
     if (count == 0.0) continue;
     out.add(sum / count, [&] { return of_sensor(frame_.sensors[sensor], statistic); });
     all += sum;
@@ -440,15 +427,9 @@ void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) 
       if (!std::isnan(seconds)) values[frame_.cell(trial, sensor)] = std::log1p(seconds);
     }
   }
-  std::vector<std::size_t> trials = stats::numbers_to(n_trials), sensors = stats::numbers_to(n_sensors);
+  const std::vector<std::size_t> trials = stats::numbers_to(n_trials), sensors = stats::numbers_to(n_sensors);
   const double as_it_is = likeness(values, trials, sensors);
   out.add(as_it_is, [] { return FeatureName{"likeness"}; });
-  const auto gained = [&](double more, const char* by) {
-    out.add(more, [&] { return FeatureName{std::string("likeness gained by ") + by}; });
-  };
-  const auto add = [&](const auto& trial_order, const auto& sensor_order, const char* by) {
-    gained(likeness(values, trial_order, sensor_order) - as_it_is, by);
-  };
   const auto rotated = [](std::vector<std::size_t> order, std::ptrdiff_t by) {
     std::rotate(order.begin(), order.begin() + (by > 0 ? by : static_cast<std::ptrdiff_t>(order.size()) + by),
                 order.end());
@@ -465,20 +446,18 @@ void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) 
     }
     return best - as_it_is;
   };
-  if (n_trials > 1) {
-    add(rotated(trials, 1), sensors, "trials shifted by one");
-    add(rotated(trials, -1), sensors, "trials shifted back by one");
-    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, "trials in reverse");
-    gained(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
-           "two trials swapped");
-  }
-  if (n_sensors > 1) {
-    add(trials, rotated(sensors, 1), "sensors shifted by one");
-    add(trials, rotated(sensors, -1), "sensors shifted back by one");
-    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), "sensors in reverse");
-    gained(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
-           "two sensors swapped");
-  }
+  const auto permute = [&](const std::vector<std::size_t>& order, const std::string& what, const auto& likeness_of) {
+    if (order.size() < 2) return;
+    const auto add = [&](double more, const std::string& by) {
+      out.add(more, [&] { return FeatureName{"likeness gained by " + by}; });
+    };
+    add(likeness_of(rotated(order, 1)) - as_it_is, what + " shifted by one");
+    add(likeness_of(rotated(order, -1)) - as_it_is, what + " shifted back by one");
+    add(likeness_of(std::vector(order.rbegin(), order.rend())) - as_it_is, what + " in reverse");
+    add(best_swap(order, likeness_of), "two " + what + " swapped");
+  };
+  permute(trials, "trials", [&](const auto& order) { return likeness(values, order, sensors); });
+  permute(sensors, "sensors", [&](const auto& order) { return likeness(values, trials, order); });
 }
 
 void FeatureMap::write_all(const DatasetStatistics& statistics, Writer& out) const {

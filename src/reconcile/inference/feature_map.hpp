@@ -53,9 +53,9 @@ class FeatureMap {
   void learn_scales(const stats::Matrix<float>& plain);
   void learn_covariates(const std::vector<CellKnowledge>& knowledge);
   [[nodiscard]] Scaled scaled(const DatasetStatistics& data) const;
-  /// The sum, and of how many trials.
-  [[nodiscard]] std::pair<double, double> sum_over_trials(const Scaled& data, std::size_t sensor,
-                                                          CellStatistic statistic) const;
+  /// The sum, and of how many cells.
+  [[nodiscard]] std::pair<double, double> sum_over(const Scaled& data, std::span<const std::size_t> trials,
+                                                   std::span<const std::size_t> sensors, CellStatistic statistic) const;
   void write_cells(const Scaled& data, Writer& out) const;
   void write_sensors(const Scaled& data, Writer& out) const;
   void write_trials(const Scaled& data, Writer& out) const;

@@ -81,18 +81,15 @@ std::vector<const EffectSpec*> drawn_in(const ReferenceTable& table, std::span<c
   return drawn;
 }
 
-/// The value of a parameter that doesn't apply is the usual one.
-double flat_value(const ParameterInfo& info, const EffectSpec& drawn) {
-  const auto value = drawn.parameters.find(info.name);
-  return to_flat(info, value == drawn.parameters.end() ? info.typical : value->second);
-}
-
-/// (n x n_parameters) flat
+/// (n x n_parameters) flat; the value of a parameter that doesn't apply is the usual one.
 stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
                                     const std::vector<const ParameterInfo*>& infos) {
   stats::Matrix<double> parameters(drawn.size(), infos.size());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    for (std::size_t p = 0; p < infos.size(); ++p) parameters(i, p) = flat_value(*infos[p], *drawn[i]);
+    for (std::size_t p = 0; p < infos.size(); ++p) {
+      const auto value = drawn[i]->parameters.find(infos[p]->name);
+      parameters(i, p) = to_flat(*infos[p], value == drawn[i]->parameters.end() ? infos[p]->typical : value->second);
+    }
   }
   return parameters;
 }
@@ -218,14 +215,9 @@ std::vector<KindFinder::Share> KindFinder::shares(std::span<const float> feature
   if (examples_.size() < 2) return {{examples_.at(0), 1.0}};
   std::vector<double> logs = discriminant_.log_densities(features);
   for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += std::log(n_[i]);
-  const double highest = std::ranges::max(logs);
-  double sum = 0.0;
   std::vector<Share> shares;
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    shares.push_back({examples_[i], std::exp(logs[i] - highest)});
-    sum += shares.back().probability;
-  }
-  for (Share& share : shares) share.probability /= sum;
+  for (const double probability : stats::detail::softmax(logs))
+    shares.push_back({examples_[shares.size()], probability});
   return shares;
 }
 
@@ -303,10 +295,9 @@ std::vector<double> HypothesisProbabilities::of(std::span<const float> statistic
 HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
                                            const Context& context)
     : map_(&view.map()),
+      names_(view.table().hypotheses()),
       seen_rows_(reconcile::seen_rows(view, settings.alpha, settings.left_out)),
       data_(view.table(), seen_rows_, settings.left_out) {
-  for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
-    names_.push_back(view.table().hypothesis_name(hypothesis));
   stats::ConformalSettings conformal;
   conformal.pooled.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads};
   conformal.pooled.threads = context.threads;
@@ -394,11 +385,9 @@ std::vector<std::size_t> PointEstimator::rows_like(const EffectSpec& kind) const
   const auto is_like = [&](const EffectSpec* drawn) {
     return std::ranges::all_of(infos_, [&](auto* info) { return applies(*info, *drawn) == applies(*info, kind); });
   };
-  std::vector<std::size_t> rows, all;
-  for (std::size_t row = 0; row < held_back_.size(); ++row) {
-    all.push_back(row);
-    if (is_like(held_back_[row])) rows.push_back(row);
-  }
+  const std::vector<std::size_t> all = stats::numbers_to(held_back_.size());
+  std::vector<std::size_t> rows = all;
+  std::erase_if(rows, [&](std::size_t row) { return !is_like(held_back_[row]); });
   return rows.size() < fewest_own ? all : rows;
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/effects/catalogue.hpp"
-#include "model/core/parallel.hpp"
 #include "model/core/text.hpp"
 #include "stats/intervals.hpp"
 
@@ -103,8 +102,7 @@ std::vector<double> tested_features(const FeatureMap& map, std::span<const float
 
 stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features) {
   stats::Matrix<double> tested(features.rows(), map.envelope_columns().size());
-  for (std::size_t row = 0; row < features.rows(); ++row)
-    std::ranges::copy(tested_features(map, features.row(row)), tested.row(row).begin());
+  std::ranges::copy(features.select_columns(map.envelope_columns()).values(), tested.values().begin());
   return tested;
 }
 
@@ -157,11 +155,11 @@ const TableView::Rows& TableView::rows() const {
       const std::vector<std::size_t> own = rows_of(table(), hypothesis, Subset::calibration);
       seen.insert(seen.end(), own.begin(), own.end());
     }
-    std::size_t next = 0;
-    ordered_parallel<double>(
-        seen.size(), threads_,
-        [&](std::size_t i) { return plain_reference_.p(tested_features(map_, rows_.features.row(seen[i]))); },
-        [&](double& p) { rows_.p[seen[next++]] = p; });
+    const auto p_of = [&](std::size_t i) {
+      return plain_reference_.p(tested_features(map_, rows_.features.row(seen[i])));
+    };
+    for (std::size_t next = 0; const double p : in_parallel<double>(seen.size(), threads_, p_of))
+      rows_.p[seen[next++]] = p;
   });
   return rows_;
 }

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/effects/catalogue.hpp"
-#include "model/core/parallel.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/ensemble/realization.hpp"
 #include "reconcile/inference/fit.hpp"
@@ -108,24 +107,22 @@ std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const Referenc
   const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
   for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
     if (in_doubt.empty()) break;
-    ordered_parallel<Rows>(
-        n_realizations - n_done, context.threads,
-        [&](std::size_t i) {
-          const std::uint32_t index = first_check_realization + n_done + static_cast<std::uint32_t>(i);
-          const SimulatedRealization realization(reference.source, reference.frame, index, n);
-          Rows rows;
-          for (const std::size_t k : in_doubt) {
-            const auto data = realization.with_effects(drawn(models[k].applied, reference, context.seed, index), 0, n);
-            rows.push_back(data ? statistics_of(reference.frame, reference.shape, reference.table.profile, *data)
-                                : std::vector<float>());
-          }
-          return rows;
-        },
-        [&](const Rows& rows) {
-          for (std::size_t k = 0; k < in_doubt.size(); ++k) {
-            if (!rows[k].empty()) datasets[in_doubt[k]].append_row(rows[k]);
-          }
-        });
+    const auto rows_of = [&](std::size_t i) {
+      const std::uint32_t index = first_check_realization + n_done + static_cast<std::uint32_t>(i);
+      const SimulatedRealization realization(reference.source, reference.frame, index, n);
+      Rows rows;
+      for (const std::size_t k : in_doubt) {
+        const auto data = realization.with_effects(drawn(models[k].applied, reference, context.seed, index), 0, n);
+        rows.push_back(data ? statistics_of(reference.frame, reference.shape, reference.table.profile, *data)
+                            : std::vector<float>());
+      }
+      return rows;
+    };
+    for (const Rows& rows : in_parallel<Rows>(n_realizations - n_done, context.threads, rows_of)) {
+      for (std::size_t k = 0; k < in_doubt.size(); ++k) {
+        if (!rows[k].empty()) datasets[in_doubt[k]].append_row(rows[k]);
+      }
+    }
     n_done = n_realizations;
     std::vector<std::size_t> still;
     for (const std::size_t k : in_doubt) {

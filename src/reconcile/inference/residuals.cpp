@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/core/parallel.hpp"
 #include "model/schema/actions.hpp"
 #include "reconcile/data/statistics.hpp"
 #include "reconcile/inference/locate.hpp"
@@ -364,8 +363,6 @@ std::vector<When> all_when(const ReferenceStudy& reference) {
   return std::move(times.all);
 }
 
-constexpr std::uint32_t first_residual_realization = 1U
-                                                     << 22U;  ///< realizations that neither profile nor table has seen
 constexpr double least_chance = 0.01;       ///< of motion in a window (assumed): profiles are means of few runs
 constexpr std::uint32_t n_simulated = 100;  ///< datasets that scores are compared with; more if alpha needs them
 constexpr std::size_t most_drivers = 3;
@@ -596,21 +593,28 @@ std::vector<double> residuals_of(const std::vector<std::uint8_t>& bits, const st
   return residuals;
 }
 
+/// What `of` says of n datasets with the shape of the study's, of realizations that neither profile nor table has seen.
+template <typename Of>
+auto of_fresh_datasets(const RealizationSource& source, const ReferenceStudy& study, std::uint32_t n,
+                       const Context& context, const Of& of) {
+  constexpr std::uint32_t first_realization = 1U << 22U;
+  const int n_replicates = study.shape.n_replicates;
+  const auto simulate = [&](std::size_t i) {
+    const SimulatedRealization one(source, study.frame, first_realization + static_cast<std::uint32_t>(i),
+                                   n_replicates);
+    return of(one.plain(0, n_replicates));
+  };
+  return in_parallel<decltype(simulate(0))>(n, context.threads, simulate);
+}
+
 Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Scores& scores,
                      const std::vector<std::uint8_t>& measured, double alpha, const Context& context) {
-  std::vector<std::vector<double>> simulated;
-  const Profile& profile = reference.table.profile;
-  ordered_parallel<std::vector<double>>(
-      std::max(n_simulated, static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / alpha))),
-      context.threads,
-      [&](std::size_t i) {
-        const SimulatedRealization realization(reference.source, reference.frame,
-                                               first_residual_realization + static_cast<std::uint32_t>(i),
-                                               reference.shape.n_replicates);
-        const std::vector<std::uint8_t> own = bits.of(realization.plain(0, reference.shape.n_replicates), profile);
-        return scores.sums(own, residuals_of(own, bits.chance));
-      },
-      [&](std::vector<double>& one) { simulated.push_back(std::move(one)); });
+  const auto n = std::max(n_simulated, static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / alpha)));
+  const auto scores_of = [&](const std::vector<Series>& runs) {
+    const std::vector<std::uint8_t> own = bits.of(runs, reference.table.profile);
+    return scores.sums(own, residuals_of(own, bits.chance));
+  };
+  auto simulated = of_fresh_datasets(reference.source, reference, n, context, scores_of);
   std::vector<double> independent;
   for (const double p : bits.chance) independent.push_back(p * (1.0 - p));
   std::vector<DriverKind> kinds;
@@ -621,21 +625,17 @@ Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Sc
 
 std::string what_of(How how, double z, const std::string& other) {
   const bool up = z > 0.0;
-  switch (how) {
-    case How::more:
-      return up ? "more motion than expected" : "less motion than expected";
-    case How::more_where_little:
-      return up ? "motion where hardly any is expected" : "still less motion where hardly any is expected";
-    case How::more_where_much:
-      return up ? "still more motion where much is expected" : "less motion where much is expected";
-    case How::opposite:
-      return up ? "the opposite of what is expected"
-                : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly "
-                  "never";
-    case How::beside:
-      break;
-  }
-  return (up ? "motion whenever " : "silence whenever ") + other + (up ? " sees some" : " sees motion");
+  if (how == How::beside)
+    return (up ? "motion whenever " : "silence whenever ") + other + (up ? " sees some" : " sees motion");
+  using UpAndDown = std::pair<const char*, const char*>;
+  static constexpr std::array<UpAndDown, 4> all{
+      {{"more motion than expected", "less motion than expected"},
+       {"motion where hardly any is expected", "still less motion where hardly any is expected"},
+       {"still more motion where much is expected", "less motion where much is expected"},
+       {"the opposite of what is expected",
+        "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly never"}}};
+  const auto& [more, less] = all[static_cast<std::size_t>(how)];
+  return up ? more : less;
 }
 
 /// The measured bits regressed on the drivers found so far.
@@ -791,20 +791,11 @@ Residuals explain_rest(const ReferenceStudy& plain, std::span<const FittedEffect
                        double alpha, const Context& context) {
   RealizationSource source = plain.source;
   for (const FittedEffect& effect : applied) source.script.effects.push_back(effect.effect);
-  const int n_replicates = plain.shape.n_replicates;
   constexpr double as_strong = 3.0;  // datasets that may be as strong, the data among them: fewer datasets see less
   const auto n = static_cast<std::uint32_t>(std::ceil(as_strong * n_contrast_kinds / alpha));
-  std::vector<ContrastData> simulated;
-  ordered_parallel<ContrastData>(
-      n, context.threads,
-      [&](std::size_t i) {
-        const SimulatedRealization one(source, plain.frame, first_residual_realization + static_cast<std::uint32_t>(i),
-                                       n_replicates);
-        return contrast_data(plain.frame, plain.shape, one.plain(0, n_replicates));
-      },
-      [&](ContrastData& one) { simulated.push_back(std::move(one)); });
-  return {telling_contrasts(plain.frame, plain.shape, contrast_data(plain.frame, plain.shape, measured.runs), simulated,
-                            alpha)};
+  const auto data_of = [&](std::span<const Series> runs) { return contrast_data(plain.frame, plain.shape, runs); };
+  return {telling_contrasts(plain.frame, plain.shape, data_of(measured.runs),
+                            of_fresh_datasets(source, plain, n, context, data_of), alpha)};
 }
 
 }  // namespace pirsim::reconcile

@@ -1,12 +1,10 @@
-#include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <sstream>
 
 #include "files/disk/file.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/fields.hpp"
-#include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/data/measured.hpp"
 #include "reconcile/report/pages.hpp"
@@ -19,30 +17,37 @@ using Json = nlohmann::ordered_json;
 
 constexpr int report_schema = 1;
 
+/// A list of what `of` makes of each.
+template <typename Items, typename Of>
+Json listed(const Items& items, const Of& of) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(of(item));
+  return list;
+}
+
 Json to_json(const Location& location) {
-  Json cells = Json::array(), envelope = Json::array();
-  for (const LocatedCell& cell : location.cells) {
-    cells.push_back({{"trial", cell.trial},
-                     {"sensor", cell.sensor},
-                     {"measured_s", cell.measured_s},
-                     {"expected_s", cell.expected_s},
-                     {"difference_s", cell.measured_s - cell.expected_s},
-                     {"band_s", {cell.low_s, cell.high_s}},
-                     {"adjusted_p", cell.adjusted_p},
-                     {"scatters", cell.scatters}});
-  }
-  for (const EnvelopeFeature& feature : location.envelope) {
-    envelope.push_back({{"feature", feature.name.text},
-                        {"observed", feature.observed},
-                        {"median", feature.median},
-                        {"envelope", {feature.lower, feature.upper}},
-                        {"adjusted_p", feature.adjusted_p}});
-  }
+  const auto of_cell = [](const LocatedCell& cell) -> Json {
+    return {{"trial", cell.trial},
+            {"sensor", cell.sensor},
+            {"measured_s", cell.measured_s},
+            {"expected_s", cell.expected_s},
+            {"difference_s", cell.measured_s - cell.expected_s},
+            {"band_s", {cell.low_s, cell.high_s}},
+            {"adjusted_p", cell.adjusted_p},
+            {"scatters", cell.scatters}};
+  };
+  const auto of_feature = [](const EnvelopeFeature& feature) -> Json {
+    return {{"feature", feature.name.text},
+            {"observed", feature.observed},
+            {"median", feature.median},
+            {"envelope", {feature.lower, feature.upper}},
+            {"adjusted_p", feature.adjusted_p}};
+  };
   return {{"p", location.p},
           {"simulated_datasets", location.n_simulated},
           {"mean_half_band_s", location.band_s},
-          {"cells", cells},
-          {"envelope", envelope}};
+          {"cells", listed(location.cells, of_cell)},
+          {"envelope", listed(location.envelope, of_feature)}};
 }
 
 Json to_json(const HypothesisScore& score) {
@@ -109,6 +114,8 @@ Json to_json(const Verification& v) {
           {"closed", v.closed}};
 }
 
+Json to_json(const Look& look) { return {{"applied", look.applied}, {"level", look.level}, {"p", look.p}}; }
+
 Json to_json(const RangeEnd& end) {
   return {{"effect", end.effect},
           {"parameter", end.parameter},
@@ -120,17 +127,16 @@ Json to_json(const RangeEnd& end) {
 }
 
 Json to_json(const Residuals& residuals, const std::string& sentence) {
-  Json drivers = Json::array();
-  for (const ResidualDriver& driver : residuals.drivers) {
-    drivers.push_back({{"who", driver.who},
-                       {"when", driver.when},
-                       {"what", driver.what},
-                       {"log_odds", driver.log_odds},
-                       {"standard_error", driver.standard_error},
-                       {"z", driver.z},
-                       {"p", driver.p}});
-  }
-  return {{"sentence", sentence}, {"drivers", drivers}};
+  const auto of_driver = [](const ResidualDriver& driver) -> Json {
+    return {{"who", driver.who},
+            {"when", driver.when},
+            {"what", driver.what},
+            {"log_odds", driver.log_odds},
+            {"standard_error", driver.standard_error},
+            {"z", driver.z},
+            {"p", driver.p}};
+  };
+  return {{"sentence", sentence}, {"drivers", listed(residuals.drivers, of_driver)}};
 }
 
 Json to_json(const DataFinding& finding) {
@@ -170,6 +176,8 @@ constexpr Column<LocatedCell> located_cells[]{
 struct CandidateLine {
   const Candidate& candidate;
   std::string reason;
+
+  explicit CandidateLine(const Candidate& of) : candidate(of), reason(in_words(of)) {}
 };
 
 constexpr Column<CandidateLine> candidate_lines[]{
@@ -192,20 +200,6 @@ constexpr Column<CandidateLine> candidate_lines[]{
     {{"reason", Holds::text, "why it was kept or ruled out"},
      [](const CandidateLine& line) -> Cell { return line.reason; }},
 };
-
-std::string where_csv(const Outcome& outcome) {
-  std::ostringstream out;
-  io::TableWriter<LocatedCell> csv(out, std::span<const Column<LocatedCell>>(located_cells));
-  for (const LocatedCell& cell : outcome.location.cells) csv.write(cell);
-  return out.str();
-}
-
-std::string candidates_csv(const Outcome& outcome) {
-  std::ostringstream out;
-  io::TableWriter<CandidateLine> csv(out, std::span<const Column<CandidateLine>>(candidate_lines));
-  for (const Candidate& candidate : with_twins(outcome.candidates)) csv.write({candidate, in_words(candidate)});
-  return out.str();
-}
 
 }  // namespace
 
@@ -235,30 +229,21 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                {"nuisance", nuisance}};
   if (!provenance.marks.empty()) json["marks"] = provenance.marks;
   json["verdict_of_rows"] = name(outcome.verdict_of_rows);
-  json["data_findings"] = Json::array();
-  for (const DataFinding& finding : outcome.data_findings) json["data_findings"].push_back(to_json(finding));
+  const auto as_json = [](const auto& item) { return to_json(item); };
+  json["data_findings"] = listed(outcome.data_findings, as_json);
   json["where"] = to_json(outcome.location);
-  Json candidates = Json::array(), fits = Json::array();
-  for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));
-  for (const FittedEffect& fitted : outcome.fits) fits.push_back(to_json(fitted));
   json["nothing"] = to_json(outcome.nothing);
   json["family"] = {{"name", name(outcome.family.family)}, {"probability", outcome.family.probability}};
-  json["candidates"] = candidates;
-  json["fits"] = fits;
-  Json looks = Json::array();
-  for (const Look& look : outcome.looks)
-    looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
-  json["looks"] = looks;
-  Json relatives = Json::array();
-  for (const Look& look : outcome.relatives)
-    relatives.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}});
-  json["relatives"] = relatives;
+  json["candidates"] = listed(with_twins(outcome.candidates), as_json);
+  json["fits"] = listed(outcome.fits, as_json);
+  json["looks"] = listed(outcome.looks, as_json);
+  for (std::size_t i = 0; i < outcome.looks.size(); ++i) json["looks"][i]["one_of"] = outcome.looks[i].one_of;
+  json["relatives"] = listed(outcome.relatives, as_json);
   json["range_end"] = outcome.range_end ? to_json(*outcome.range_end) : Json();
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, sentence(*outcome.residuals)) : Json();
   json["left_over"] = outcome.left_over ? to_json(*outcome.left_over, sentence_of_rest(*outcome.left_over)) : Json();
-  json["telling_features"] = Json::array();
-  for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(feature.text);
+  json["telling_features"] = listed(outcome.telling_features, std::mem_fn(&FeatureName::text));
   json["calibration_error"] = outcome.calibration_error;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
@@ -275,8 +260,8 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
                   const Provenance& provenance) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  io::write_text_file(folder / "where.csv", where_csv(outcome));
-  io::write_text_file(folder / "candidates.csv", candidates_csv(outcome));
+  io::write_text_file(folder / "where.csv", table_of(located_cells, outcome.location.cells));
+  io::write_text_file(folder / "candidates.csv", table_of(candidate_lines, with_twins(outcome.candidates)));
   const std::filesystem::path patch = folder / "script_patched.yaml";
   if (!outcome.fits.empty()) {
     io::write_text_file(patch, io::to_yaml(io::moved(patched(script, outcome), folder)));

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <iomanip>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "engine/effects/catalogue.hpp"
 #include "files/disk/file.hpp"
 #include "model/core/text.hpp"
-#include "pirsim/csv.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -57,12 +53,11 @@ io::GridChart power_grid(const PlanResult& result) {
 }
 
 io::GridChart confusion_chart(const PlanResult& result) {
-  io::GridChart chart = confusion_grid(result.hypotheses, result.confusion);
-  chart.title = "What would be hidden (rows), and what it would look like most (columns), % of cases";
-  chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can hardly "
-      "tell apart.";
-  return chart;
+  return confusion_grid(
+      result.hypotheses, result.confusion,
+      "What would be hidden (rows), and what it would look like most (columns), % of cases",
+      "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can "
+      "hardly tell apart.");
 }
 
 constexpr Column<Design> design_columns[]{
@@ -83,7 +78,7 @@ constexpr Column<Design> design_columns[]{
 
 std::string with_sign(double value) {
   const std::string text = fixed(value, 0);
-  return (value > 0.0 && text != "0" ? "+" : "") + text;
+  return text == "-0" ? "0" : (value > 0.0 && text != "0" ? "+" : "") + text;
 }
 
 /// Names in the order in which they first come.
@@ -175,46 +170,44 @@ io::ReportSection where(const Outcome& outcome, const Watched& watched) {
 }
 
 io::ReportSection envelope(const Location& location, double alpha) {
-  io::ReportSection section{"Seen as a whole", {}, {}, {}};
   const auto outside = std::ranges::count_if(location.envelope, [&](const auto& e) { return e.adjusted_p <= alpha; });
-  section.paragraphs = {
-      "The global test, and its picture: if the model were right, any red dot would appear in only " +
-      short_number(100.0 * alpha) + " % of cases. Here, " +
-      count_of(static_cast<std::size_t>(outside), location.envelope.size()) + " lie outside (" +
-      p_in_words(location.p, location.least_p()) +
-      "). Each number is counted in units of its own scatter in the model, not in seconds; large deviations are "
-      "compressed."};
-  section.charts.emplace_back(envelope_chart(location, alpha));
-  return section;
+  return {"Seen as a whole",
+          {"The global test, and its picture: if the model were right, any red dot would appear in only " +
+           short_number(100.0 * alpha) + " % of cases. Here, " +
+           count_of(static_cast<std::size_t>(outside), location.envelope.size()) + " lie outside (" +
+           p_in_words(location.p, location.least_p()) +
+           "). Each number is counted in units of its own scatter in the model, not in seconds; large deviations are "
+           "compressed."},
+          {},
+          {envelope_chart(location, alpha)}};
 }
 
 io::ReportSection candidates(const Outcome& outcome) {
-  io::ReportSection section{"What it may be", {}, {}, {}};
-  if (outcome.verdict == Verdict::no_disagreement) {
-    section.paragraphs.push_back("Nothing was looked for, since nothing differs.");
-    return section;
-  }
-  section.paragraphs.push_back(std::string("Every effect ") +
-                               (outcome.looked_for.empty() ? "of the catalogue" : "looked for") +
-                               " was simulated many times in rooms like this one.");
-  section.charts.emplace_back(ranking_chart(outcome));
+  const std::string heading = "What it may be";
+  if (outcome.verdict == Verdict::no_disagreement)
+    return {heading, {"Nothing was looked for, since nothing differs."}, {}, {}};
+  io::ReportSection section{
+      heading,
+      {std::string("Every effect ") + (outcome.looked_for.empty() ? "of the catalogue" : "looked for") +
+       " was simulated many times in rooms like this one."},
+      {},
+      {ranking_chart(outcome)}};
   for (const Look& look : outcome.looks) section.paragraphs.push_back(in_words(look));
   return section;
 }
 
 io::ReportSection reasons(const Outcome& outcome) {
-  io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
-  section.paragraphs = {
-      "p: twice the smaller p of two tests. One asks whether the effect's own data look like these, the other whether "
-      "another effect explains these better. At most " +
-      short_number(outcome.alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
     table.rows.push_back({candidate.score.hypothesis, std::string(name(candidate.family)),
                           percent(candidate.score.probability), short_number(candidate.score.p), in_words(candidate)});
   }
-  section.tables.push_back(std::move(table));
-  return section;
+  return {"Every candidate, and why it was kept or dropped",
+          {"p: twice the smaller p of two tests. One asks whether the effect's own data look like these, the other "
+           "whether another effect explains these better. At most " +
+           short_number(outcome.alpha) + " speaks against the effect."},
+          {std::move(table)},
+          {}};
 }
 
 io::ReportSection strength(const Outcome& outcome) {
@@ -279,22 +272,20 @@ io::BarChart held_out_chart(const Verification& v, const std::string& named) {
 
 io::ReportSection held_out(const Outcome& outcome) {
   const Verification& v = *outcome.verification;
-  io::ReportSection section{"Does it help", {}, {}, {}};
-  section.paragraphs = {
-      what_is_shown(outcome),
-      "Trials were set aside, what is missing was sought and fitted without them, and then they were compared with the "
-      "model before and after, " +
-          std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
-          short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)};
-  section.charts.emplace_back(held_out_chart(v, applied_to_held_out(outcome)));
   io::Table table{{"on trials set aside", "before", "after"}, {}};
   table.rows = {
       {"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
       {"cells outside the model's range", count_of(v.before.cells_outside, v.before.n_cells),
        count_of(v.after.cells_outside, v.after.n_cells)},
       {"test of everything", p_in_words(v.before.p, v.before.least_p), p_in_words(v.after.p, v.after.least_p)}};
-  section.tables.push_back(std::move(table));
-  return section;
+  return {"Does it help",
+          {what_is_shown(outcome),
+           "Trials were set aside, what is missing was sought and fitted without them, and then they were compared "
+           "with the model before and after, " +
+               std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
+               short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)},
+          {std::move(table)},
+          {held_out_chart(v, applied_to_held_out(outcome))}};
 }
 
 /// A statistic's name for a reader who doesn't know the program.
@@ -313,7 +304,6 @@ std::string in_plain_words(const std::string& statistic) {
                                                         {"period_power", "motion comes periodically"},
                                                         {"cycle_strength", "motion keeps time with the arms"},
                                                         {"agreement", "motion comes when expected"},
-                                                        {"shift_s", "motion comes later than expected"},
                                                         {"lead_seconds", "motion before the main part"},
                                                         {"tail_seconds", "motion after the main part"},
                                                         {"late_tail_seconds", "motion long after the main part"},
@@ -325,18 +315,9 @@ std::string in_plain_words(const std::string& statistic) {
   if (const auto found = words.find(statistic); found != words.end()) return found->second;
   constexpr std::string_view again = "again_after_";
   if (statistic.starts_with(again)) return "motion again " + statistic.substr(again.size()) + " s later";
-  constexpr std::string_view sixth = "sixth_";
-  if (statistic.starts_with(sixth)) return "motion in part " + statistic.substr(sixth.size()) + " of 6";
   std::string text = statistic;
   std::ranges::replace(text, '_', ' ');
   return text;
-}
-
-std::string to_csv(const PlanResult& result) {
-  std::ostringstream out;
-  io::TableWriter<Design> csv(out, std::span<const Column<Design>>(design_columns));
-  for (const Design& design : result.designs) csv.write(design);
-  return out.str();
 }
 
 }  // namespace
@@ -350,9 +331,6 @@ io::Report plan_page(const PlanResult& result) {
       "many rooms like this one, and what the data would then say. " +
       std::to_string(result.n_datasets) + " datasets that took no part in training were judged."};
   report.paragraphs.insert(report.paragraphs.end(), result.left_out.begin(), result.left_out.end());
-  io::ReportSection gain{"What to measure next", {}, {}, {}};
-  gain.charts.emplace_back(gain_chart(result));
-  io::ReportSection table{"The same in numbers", {}, {}, {}};
   io::Table numbers{
       {"measured", "min", "right effect the likeliest", "bits", "bits more", "95 %", "bits more a minute"}, {}};
   for (const Design& d : result.designs) {
@@ -364,12 +342,10 @@ io::Report plan_page(const PlanResult& result) {
                             : d.minutes > 0.0 ? short_number(d.more_bits / d.minutes)
                                               : "takes no time"});
   }
-  table.tables.push_back(std::move(numbers));
-  io::ReportSection seen{"What would be seen at all", {}, {}, {}};
-  seen.charts.emplace_back(power_grid(result));
-  io::ReportSection confused{"What would be taken for what", {}, {}, {}};
-  confused.charts.emplace_back(confusion_chart(result));
-  report.sections = {std::move(gain), std::move(table), std::move(seen), std::move(confused)};
+  report.sections = {{"What to measure next", {}, {}, {gain_chart(result)}},
+                     {"The same in numbers", {}, {std::move(numbers)}, {}},
+                     {"What would be seen at all", {}, {}, {power_grid(result)}},
+                     {"What would be taken for what", {}, {}, {confusion_chart(result)}}};
   return report;
 }
 
@@ -404,7 +380,7 @@ void write_plan(const std::filesystem::path& folder, const PlanResult& result, c
   std::filesystem::create_directories(folder, fault);
   io::Report page = plan_page(result);
   page.footer = made_by;
-  io::write_text_file(folder / "plan.csv", to_csv(result));
+  io::write_text_file(folder / "plan.csv", table_of(design_columns, result.designs));
   io::write_text_file(folder / "plan.html", io::to_html(page));
   io::write_text_file(folder / "plan.json", to_json(result));
 }
@@ -536,10 +512,12 @@ io::GridChart::Cell share_cell(const Rate& rate) {
   return cell;
 }
 
-io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
-                             const std::vector<std::vector<double>>& shares) {
+io::GridChart confusion_grid(const std::vector<std::string>& hypotheses, const std::vector<std::vector<double>>& shares,
+                             const std::string& title, const std::string& note) {
   constexpr double worth_a_number = 0.05;
   io::GridChart chart;
+  chart.title = title;
+  chart.note = note;
   chart.label = "share of a row";
   chart.rows = chart.columns = hypotheses;
   for (const std::vector<double>& row : shares) {
@@ -556,25 +534,18 @@ io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
 }
 
 io::Report report_page(const Outcome& outcome, const Watched& watched) {
-  if (!outcome.data_findings.empty()) {
-    Outcome rows = as_compared(outcome);
-    rows.data_findings.clear();
-    io::Report report = report_page(rows, watched);
-    report.finding = sentence(outcome);
-    report.paragraphs = details(outcome);
-    report.paragraphs.push_back(next_step(outcome));
-    report.sections.insert(report.sections.begin(), file_section(outcome.data_findings));
-    return report;
-  }
+  const Outcome rows = as_compared(outcome);
   io::Report report;
   report.title = "Model and measurement";
   report.finding = sentence(outcome);
   report.paragraphs = details(outcome);
   report.paragraphs.push_back(next_step(outcome));
-  report.sections = {where(outcome, watched), envelope(outcome.location, outcome.alpha), candidates(outcome)};
-  if (!outcome.fits.empty()) report.sections.push_back(strength(outcome));
-  if (outcome.verification) report.sections.push_back(held_out(outcome));
-  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome));
+  if (!outcome.data_findings.empty()) report.sections.push_back(file_section(outcome.data_findings));
+  for (auto& section : {where(rows, watched), envelope(rows.location, rows.alpha), candidates(rows)})
+    report.sections.push_back(section);
+  if (!rows.fits.empty()) report.sections.push_back(strength(rows));
+  if (rows.verification) report.sections.push_back(held_out(rows));
+  if (rows.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(rows));
   return report;
 }
 

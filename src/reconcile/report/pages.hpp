@@ -4,9 +4,12 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "pirsim/csv.hpp"
 #include "pirsim/reconcile.hpp"
 #include "reconcile/selftest/plan.hpp"
 #include "reconcile/selftest/selftest.hpp"
@@ -30,14 +33,24 @@ namespace pirsim::reconcile {
 /// How often an effect is seen, and is then in the set, against its strength.
 [[nodiscard]] io::LineChart power_chart(const SelftestResult& result, const std::string& effect);
 
+/// As CSV, a line an item.
+template <typename Row, std::size_t n, typename Items>
+[[nodiscard]] std::string table_of(const Column<Row> (&columns)[n], const Items& items) {
+  std::ostringstream out;
+  io::TableWriter<Row> csv(out, std::span<const Column<Row>>(columns));
+  for (const auto& item : items) csv.write(Row(item));
+  return out.str();
+}
+
 /// "95 % (75 % to 100 %, 19 of 20)".
 [[nodiscard]] std::string with_interval(const Rate& rate);
 /// A square with the share in percent; an empty one without any case.
 [[nodiscard]] io::GridChart::Cell share_cell(const Rate& rate);
 /// What was hidden (rows) against what it was taken for (columns). shares: (n_hypotheses x n_hypotheses) of each row; a
-/// row of zeros has no case and stays empty. Title and note are the caller's.
+/// row of zeros has no case and stays empty.
 [[nodiscard]] io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
-                                           const std::vector<std::vector<double>>& shares);
+                                           const std::vector<std::vector<double>>& shares, const std::string& title,
+                                           const std::string& note);
 
 /// How a reader gets at the runs in which a cell was counted.
 struct Watched {

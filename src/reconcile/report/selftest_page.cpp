@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
-#include <span>
 #include <sstream>
 
 #include "files/disk/file.hpp"
@@ -15,37 +13,27 @@
 namespace pirsim::reconcile {
 namespace {
 
-io::Table rate_table(const SelftestResult& result) {
-  io::Table table{{"how often", "share (95 % interval)"}, {}};
-  for (const Rate& rate : rates_of(result)) table.rows.push_back({rate.what, with_interval(rate)});
-  return table;
-}
-
 io::Table pair_table(const std::vector<ConfusedPair>& pairs) {
   io::Table table{{"pair", "share", "in the catalogue", "what each does to the data"}, {}};
+  const auto does = [](const std::string& effect) {
+    return effect + ": " + effects::find(effect).info.fingerprint + ".";
+  };
   for (const ConfusedPair& pair : pairs) {
     table.rows.push_back({pair.first + ", " + pair.second, with_interval(pair.rate),
-                          pair.expected ? "foreseen" : "not foreseen",
-                          pair.first + ": " + pair.first_does + ". " + pair.second + ": " + pair.second_does + "."});
+                          pair.expected ? "foreseen" : "not foreseen", does(pair.first) + " " + does(pair.second)});
   }
   return table;
 }
 
-io::ReportSection confusion(const SelftestResult& result) {
-  io::ReportSection section{"What is taken for what", {}, {}, {}};
-  section.charts.emplace_back(confusion_chart(result));
-  return section;
-}
-
 io::ReportSection pairs(const SelftestResult& result) {
-  io::ReportSection section{"What can't be told apart, and why", {}, {}, {}};
+  const std::string heading = "What can't be told apart, and why";
   const std::vector<ConfusedPair> confused = confused_pairs(result);
-  section.paragraphs.push_back(confused.empty()
-                                   ? "No two effects are taken for each other in a tenth of their cases."
-                                   : "These are taken for each other in a tenth of their cases or more. They "
-                                     "change the data in similar ways:");
-  if (!confused.empty()) section.tables.push_back(pair_table(confused));
-  return section;
+  if (confused.empty())
+    return {heading, {"No two effects are taken for each other in a tenth of their cases."}, {}, {}};
+  return {heading,
+          {"These are taken for each other in a tenth of their cases or more. They change the data in similar ways:"},
+          {pair_table(confused)},
+          {}};
 }
 
 /// The shares that a reader asks for first.
@@ -92,16 +80,22 @@ io::ReportSection power(const SelftestResult& result) {
 
 std::string share(const Rate& rate) {
   if (rate.of == 0) return "no case";
-  std::ostringstream out;
   const Interval interval = rate.interval();
-  out << std::fixed << std::setprecision(3) << rate.value() << " (" << interval.low << "-" << interval.high << ", "
-      << rate.hits << " of " << rate.of << ")";
-  return out.str();
+  return fixed(rate.value(), 3) + " (" + fixed(interval.low, 3) + "-" + fixed(interval.high, 3) + ", " +
+         std::to_string(rate.hits) + " of " + std::to_string(rate.of) + ")";
 }
 
 struct CaseLine {
   const InjectedCase& one;
   std::string named, hidden;
+
+  explicit CaseLine(const InjectedCase& of) : one(of), named(joined(of.named, " ")) {
+    for (const EffectSpec& effect : one.effects) {
+      for (const auto& [parameter, value] : effect.parameters)
+        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
+    }
+  }
 };
 
 constexpr Column<CaseLine> case_lines[]{
@@ -127,16 +121,6 @@ constexpr Column<CaseLine> case_lines[]{
     {{"hidden", Holds::text, "parameters of what was hidden"},
      [](const CaseLine& line) -> Cell { return line.hidden; }},
 };
-
-CaseLine line_of(const InjectedCase& one) {
-  CaseLine line{one, joined(one.named, " "), {}};
-  for (const EffectSpec& effect : one.effects) {
-    for (const auto& [parameter, value] : effect.parameters)
-      line.hidden += (line.hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
-    for (const auto& [choice, value] : effect.choices) line.hidden += " " + choice + "=" + value;
-  }
-  return line;
-}
 
 /// How often the likeliest hypothesis was right, against the probability that it was given.
 io::LineChart reliability_chart(const SelftestResult& result) {
@@ -187,22 +171,13 @@ std::string calibration_error(const SelftestResult& result) {
   return result.reliability.bins.empty() ? "no case" : fixed(result.reliability.expected_calibration_error, 3);
 }
 
-std::string to_csv(const SelftestResult& result) {
-  std::ostringstream out;
-  io::TableWriter<CaseLine> csv(out, std::span<const Column<CaseLine>>(case_lines));
-  for (const InjectedCase& one : result.cases) csv.write(line_of(one));
-  return out.str();
-}
-
 }  // namespace
 
 io::GridChart confusion_chart(const SelftestResult& result) {
-  io::GridChart chart = confusion_grid(result.hypotheses, confusion_of(result));
-  chart.title = "What was hidden (rows), and what it looked like most (columns)";
-  chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
-      "effect without a disagreement are left out.";
-  return chart;
+  return confusion_grid(result.hypotheses, confusion_of(result),
+                        "What was hidden (rows), and what it looked like most (columns)",
+                        "Dark squares on the diagonal are right; dark squares beside it are two effects that "
+                        "look alike. Cases of an effect without a disagreement are left out.");
 }
 
 io::LineChart power_chart(const SelftestResult& result, const std::string& effect) {
@@ -230,21 +205,26 @@ io::Report selftest_page(const SelftestResult& result) {
   io::Report report;
   report.title = "Does reconciliation find what is hidden?";
   report.finding = finding(result);
-  report.sections = {confusion(result), pairs(result), power(result)};
-  io::ReportSection calibration{"Can probabilities and intervals be trusted", {}, {}, {}};
-  calibration.paragraphs = {"Mean distance between probability and share: " + calibration_error(result) + "."};
-  calibration.charts.emplace_back(reliability_chart(result));
+  io::Table rates{{"how often", "share (95 % interval)"}, {}};
+  for (const Rate& rate : rates_of(result)) rates.rows.push_back({rate.what, with_interval(rate)});
+  io::ReportSection calibration{"Can probabilities and intervals be trusted",
+                                {"Mean distance between probability and share: " + calibration_error(result) + "."},
+                                {},
+                                {reliability_chart(result)}};
   if (io::BarChart chart = coverage_chart(result); !chart.bars.empty())
     calibration.charts.emplace_back(std::move(chart));
-  report.sections.push_back(std::move(calibration));
-  report.sections.push_back({"All rates", {}, {rate_table(result)}, {}});
+  report.sections = {{"What is taken for what", {}, {}, {confusion_chart(result)}},
+                     pairs(result),
+                     power(result),
+                     std::move(calibration),
+                     {"All rates", {}, {std::move(rates)}, {}}};
   return report;
 }
 
 void write_selftest(const std::filesystem::path& folder, const SelftestResult& result, const std::string& made_by) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  io::write_text_file(folder / "selftest.csv", to_csv(result));
+  io::write_text_file(folder / "selftest.csv", table_of(case_lines, result.cases));
   io::write_text_file(folder / "selftest.md", to_markdown(result));
   io::Report page = selftest_page(result);
   page.footer = made_by;

@@ -1,10 +1,9 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <string_view>
 
 #include "engine/effects/catalogue.hpp"
@@ -67,25 +66,18 @@ std::string alike(const DataFinding& finding, const std::string& how) {
 }
 
 /// Where to look for the cause.
-std::string_view advice(What what) {
-  switch (what) {
-    case What::equal_columns:
-    case What::opposite_columns:
-      return "see which input each of the two columns was read from";
-    case What::constant_column:
-      return "see whether the output or its wire is stuck";
-    case What::beats:
-      return "see whether the logger writes its sign of life or its polling as motion";
-    case What::polled:
-      return "see how often the logger asks: if only so often, set window_s to that and resample the rows";
-    case What::repeated_rows:
-      return "see whether files were joined or saved under a wrong name; take one of the two places out";
-    case What::all_silent:
-      return "see whether anything was recorded then; leave fields empty that are unknown";
-    case What::silent_column:
-      break;
-  }
-  return "see whether the sensor has power and its column is the right one";
+std::string advice(What what) {
+  constexpr const char* of_two = "see which input each of the two columns was read from";
+  static constexpr std::array<const char*, data_finding_names.size()> all{
+      of_two,
+      of_two,
+      "see whether the output or its wire is stuck",
+      "see whether the logger writes its sign of life or its polling as motion",
+      "see how often the logger asks: if only so often, set window_s to that and resample the rows",
+      "see whether files were joined or saved under a wrong name; take one of the two places out",
+      "see whether anything was recorded then; leave fields empty that are unknown",
+      "see whether the sensor has power and its column is the right one"};
+  return all[static_cast<std::size_t>(what)];
 }
 
 using Names = std::vector<std::string>;
@@ -274,11 +266,6 @@ bool was_refused(const Outcome& outcome) {
   });
 }
 
-const Candidate& candidate_of(const Outcome& outcome, const std::string& effect) {
-  return *std::ranges::find(outcome.candidates, effect,
-                            [](const Candidate& candidate) { return candidate.score.hypothesis; });
-}
-
 std::string sentence_of_nearest(const Outcome& outcome) {
   const FittedEffect& fitted = outcome.fits.front();
   return (is_of_data(fitted) ? "The closest known cause is a fault of the data: they look " + as_if(fitted)
@@ -301,9 +288,10 @@ std::string sentence_of_none(const Outcome& outcome) {
 /// Of the likeliest effect if it was dropped, though the model with it passes.
 std::string told_of_likeness(const Outcome& outcome) {
   const Look& look = outcome.looks.back();
+  const auto is_it = [&](const Candidate& candidate) { return candidate.score.hypothesis == look.applied.front(); };
   return "The closest known cause is " + look.applied.front() +
          ": with it applied, the test of everything together sees no difference (" + p_in_words(look.p, look.least_p) +
-         "). It was dropped all the same: " + candidate_of(outcome, look.applied.front()).reason.why;
+         "). It was dropped all the same: " + std::ranges::find_if(outcome.candidates, is_it)->reason.why;
 }
 
 std::string told_of_end(const RangeEnd& end) {
@@ -435,19 +423,11 @@ std::string sentence_of_file(const Outcome& outcome) {
   return "Look at the file first: " + joined(told, "; ") + ", which sensors can't have said.";
 }
 
-/// With that verdict, what the comparison says.
-std::vector<std::string> details_of_faulty(const Outcome& outcome) {
-  const Outcome rows = as_compared(outcome);
-  std::vector<std::string> texts = details(rows);
-  texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows));
-  return texts;
-}
-
 /// What a reader may do with that verdict.
 std::string next_step_of_faulty(const Outcome& outcome) {
   std::vector<std::string> steps;
   for (const DataFinding& finding : outcome.data_findings) {
-    const std::string step(advice(finding.what));
+    const std::string step = advice(finding.what);
     if (finding.is_impossible && std::ranges::find(steps, step) == steps.end()) steps.push_back(step);
   }
   return "What to do next: " + joined(steps, "; ") +
@@ -468,12 +448,6 @@ std::string with_unit(double value, const std::string& unit) {
   const std::string number = short_number(value);
   if (unit.empty()) return number;
   return number + (unit.starts_with("1/") ? " per " + unit.substr(2) : " " + unit);
-}
-
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str() == "-0" ? "0" : out.str();
 }
 
 std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
@@ -549,25 +523,23 @@ std::string in_words(const DataFinding& finding) {
 
 Outcome as_compared(const Outcome& outcome) {
   Outcome rows = outcome;
-  rows.verdict = outcome.verdict_of_rows;
+  if (rows.verdict == Verdict::faulty_data) rows.verdict = rows.verdict_of_rows;
   return rows;
 }
 
 io::ReportSection file_section(const std::vector<DataFinding>& findings) {
-  io::ReportSection section{"A look at the file", {}, {}, {}};
-  section.paragraphs.emplace_back(
-      "Before anything is compared, the rows themselves are looked at: can sensors have said them? What the model's "
-      "own "
-      "runs do as well, as repeating a movement by the metronome, isn't told.");
   io::Table table{{"finding", "told since", "what to do"}, {}};
   for (const DataFinding& finding : findings) {
     const std::string chance = finding.chance < 1e-12 ? "below 1e-12" : short_number(finding.chance);
     table.rows.push_back({in_words(finding),
                           finding.is_impossible ? "by chance " + chance : "odd, but sensors can do that",
-                          std::string(advice(finding.what))});
+                          advice(finding.what)});
   }
-  section.tables.push_back(std::move(table));
-  return section;
+  return {"A look at the file",
+          {"Before anything is compared, the rows themselves are looked at: can sensors have said them? What the "
+           "model's own runs do as well, as repeating a movement by the metronome, isn't told."},
+          {std::move(table)},
+          {}};
 }
 
 // The verdict in one sentence, what was found on the way to it, and what a reader may do.
@@ -636,8 +608,13 @@ std::string sentence(const Outcome& outcome) {
 }
 
 std::vector<std::string> details(const Outcome& outcome) {
-  if (outcome.verdict == Verdict::faulty_data) return details_of_faulty(outcome);
   std::vector<std::string> texts;
+  if (outcome.verdict == Verdict::faulty_data) {
+    const Outcome rows = as_compared(outcome);
+    texts = details(rows);
+    texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows));
+    return texts;
+  }
   if (!outcome.looked_for.empty())
     texts.push_back("The catalogue was cut down to " + enumerated(outcome.looked_for, "and") + ".");
   const bool none = outcome.verdict == Verdict::none_in_catalogue;

@@ -33,10 +33,8 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string enumerated(const std::vector<std::string>& names, const std::string& last);
 /// "3 deg", "0.1 per s".
 [[nodiscard]] std::string with_unit(double value, const std::string& unit);
-/// So many digits after the point; never "-0".
-[[nodiscard]] std::string fixed(double value, int digits);
 
-/// The outcome without what was found in the file: its verdict is that of the comparison.
+/// The outcome with the verdict of the comparison, whatever was found in the file.
 [[nodiscard]] Outcome as_compared(const Outcome& outcome);
 /// Part of the report: a look at the file.
 [[nodiscard]] io::ReportSection file_section(const std::vector<DataFinding>& findings);

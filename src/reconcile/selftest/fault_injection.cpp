@@ -26,10 +26,6 @@ bool comes_in_strengths(const EffectSpec& spec) {
   return first.low < first.high;
 }
 
-bool has_strength(const EffectSpec& spec, Strength wanted) {
-  return !comes_in_strengths(spec) || strength_of(spec) == wanted;
-}
-
 std::vector<Plan> plans_of(const ReferenceStudy& reference, const SelftestSettings& settings) {
   std::vector<Plan> plans(settings.n_nulls);
   for (const std::string& name : reference.table.effects) {
@@ -55,7 +51,8 @@ std::optional<std::vector<EffectSpec>> draw(const Plan& plan, const std::vector<
   std::vector<EffectSpec> drawn;
   for (const effects::Effect* effect : wanted) {
     drawn.push_back(effects::draw_from_prior(*effect, realization.scene, realization.script, stream));
-    if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
+    const bool any_will_do = plan.kind == CaseKind::two || !comes_in_strengths(drawn.back());
+    if (!any_will_do && strength_of(drawn.back()) != plan.strength) return std::nullopt;
   }
   return drawn;
 }
@@ -88,12 +85,6 @@ std::string key_of(const ReferenceStudy& reference, const SelftestSettings& sett
   return sha256(text);
 }
 
-/// Other numbers are kept beside the first, so that nobody has to remove these.
-std::filesystem::path folder_of(const SelftestSettings& settings, const std::string& key) {
-  if (settings.injected_folder.empty()) return {};
-  return settings.injected_folder.string() + "_" + key.substr(0, 8);
-}
-
 }  // namespace
 
 Strength strength_of(const EffectSpec& spec) {
@@ -117,24 +108,20 @@ std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const Selft
   context.begin("datasets with injected faults");
   const std::vector<Plan> plans = plans_of(reference, settings);
   const std::string key = key_of(reference, settings, context.seed);
-  TableStore store(folder_of(settings, key), key);
+  std::filesystem::path folder = settings.injected_folder;
+  if (!folder.empty()) folder += "_" + key.substr(0, 8);  // other numbers are kept beside the first
+  TableStore store(folder, key);
   std::vector<InjectedDataset> injected;
-  stats::Matrix<float> statistics;
   for_each_chunk(
       store, static_cast<std::uint32_t>(plans.size()), context,
       [&](std::uint32_t index) { return inject(plans[index], index, reference, settings.n_replicates, context.seed); },
       [&](TableChunk& chunk) {
-        append_statistics(reference.frame, reference.shape, reference.table.profile, chunk, context.threads,
-                          statistics);
         for (SimulatedDataset& dataset : chunk.datasets) {
           const Plan& plan = plans[dataset.row.hypothesis];
-          injected.push_back({plan.kind, plan.strength, std::move(dataset.row.effects), {}});
+          injected.push_back({plan.kind, plan.strength, std::move(dataset.row.effects),
+                              statistics_of(reference.frame, reference.shape, reference.table.profile, dataset.runs)});
         }
       });
-  for (std::size_t i = 0; i < injected.size(); ++i) {
-    const auto row = std::as_const(statistics).row(i);
-    injected[i].statistics.assign(row.begin(), row.end());
-  }
   return injected;
 }
 

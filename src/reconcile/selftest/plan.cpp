@@ -63,12 +63,6 @@ TrialSpec slow_walk(const SceneSpec& scene, const ScriptSpec& script) {
   return trial;
 }
 
-TrialSpec empty_room(const ScriptSpec& script) {
-  TrialSpec trial = alone(script, "empty room");
-  trial.people.front().actions = {labelled(action::Wait{60.0 * empty_room_min}, script)};
-  return trial;
-}
-
 std::string unused_id(const ScriptSpec& script, std::string id, const std::string& more) {
   while (std::ranges::find(script.trials, id, &TrialSpec::id) != script.trials.end()) id += more;
   return id;
@@ -110,16 +104,14 @@ Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t>
   }
   const double prior = 1.0 / static_cast<double>(reference.table.n_hypotheses());
   constexpr double least_probability = 1e-4;
-  ordered_parallel<Judgement>(
-      judged.rows.size(), context.threads,
-      [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); },
-      [&](Judgement& one) {
-        const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
-        judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
-        const auto best = std::ranges::max_element(one.scores, {}, &HypothesisScore::probability);
-        judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
-        judged.p.push_back(one.p);
-      });
+  const auto judge = [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); };
+  for (const Judgement& one : in_parallel<Judgement>(judged.rows.size(), context.threads, judge)) {
+    const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
+    judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
+    const auto best = std::ranges::max_element(one.scores, {}, &HypothesisScore::probability);
+    judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
+    judged.p.push_back(one.p);
+  }
   return judged;
 }
 
@@ -220,11 +212,7 @@ std::vector<std::vector<double>> confusion_of(const ReferenceStudy& reference, c
   for (std::size_t i = 0; i < judged.rows.size(); ++i) {
     shares[reference.table.rows[judged.rows[i]].hypothesis][judged.likeliest[i]] += 1.0;
   }
-  for (std::vector<double>& row : shares) {
-    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
-    for (double& share : row) share = sum > 0.0 ? share / sum : 0.0;
-  }
-  return shares;
+  return shares_of_rows(std::move(shares));
 }
 
 /// A tenth of what naming takes: designs are compared on the same realizations, so that few suffice.
@@ -275,7 +263,11 @@ LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
     study.script.trials.push_back(std::move(again));
   }
   add(study, scene, study.walk, "a slow walk", [&] { return slow_walk(scene, script); });
-  add(study, scene, study.empty, "the empty room", [&] { return empty_room(script); });
+  add(study, scene, study.empty, "the empty room", [&] {
+    TrialSpec trial = alone(script, "empty room");
+    trial.people.front().actions = {labelled(action::Wait{60.0 * empty_room_min}, script)};
+    return trial;
+  });
   return study;
 }
 
@@ -308,20 +300,15 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
   PlanResult result;
   result.left_out = std::move(study.left_out);
   result.n_datasets = base.rows.size();
-  for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
-    result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
-  result.designs.push_back({as_planned.name,
-                            as_planned.what,
-                            minutes_of(reference, planned),
-                            mean(base.bits),
-                            share_right(reference, base),
-                            0.0,
-                            {0.0, 0.0}});
+  result.hypotheses = reference.table.hypotheses();
+  const auto design_of = [](const ReferenceStudy& in, const Idea& idea, const Judged& with) {
+    return Design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
+  };
+  result.designs.push_back(design_of(reference, {as_planned.name, as_planned.what, planned}, base));
   const auto add = [&](const ReferenceStudy& in, const Idea& idea) {
     const Judged with = judged(in, idea);
-    Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
-    compare(by_realization(in, with), base_bits, design);
-    result.designs.push_back(std::move(design));
+    result.designs.push_back(design_of(in, idea, with));
+    compare(by_realization(in, with), base_bits, result.designs.back());
   };
   for (const Idea& idea : ideas_of(study, reference)) add(reference, idea);
   if (settings.kind == Measured::Kind::sums) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -14,8 +15,9 @@
 namespace pirsim::reconcile {
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
+template <typename Item, typename Value, typename Of = std::identity>
+bool contains(const std::vector<Item>& items, const Value& value, Of of = {}) {
+  return std::ranges::find(items, value, of) != items.end();
 }
 
 bool is_named(const InjectedCase& c, const std::string& effect) {
@@ -34,12 +36,7 @@ void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, Injecte
 InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, const InjectedDataset& injected,
                     CaseKind kind) {
   const Judgement judgement = analyst.judge(injected.statistics);
-  InjectedCase result;
-  result.kind = kind;
-  result.truth = injected.truth();
-  result.strength = injected.strength;
-  result.effects = injected.effects;
-  result.verdict = judgement.decision.verdict;
+  InjectedCase result{kind, injected.truth(), injected.strength, injected.effects, judgement.decision.verdict};
   for (const std::size_t hypothesis : judgement.decision.kept) {
     if (hypothesis > 0) result.named.push_back(reference.table.hypothesis_name(hypothesis));
   }
@@ -66,15 +63,13 @@ InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, con
 void judge_all(const ReferenceStudy& reference, const Analyst& analyst, const std::vector<InjectedDataset>& injected,
                const std::vector<std::size_t>& which, std::optional<CaseKind> kind, unsigned threads,
                std::vector<InjectedCase>& cases) {
-  ordered_parallel<InjectedCase>(
-      which.size(), threads,
-      [&](std::size_t i) {
-        const InjectedDataset& one = injected[which[i]];
-        InjectedCase result = judged(reference, analyst, one, kind.value_or(one.kind));
-        result.injected = which[i];
-        return result;
-      },
-      [&](InjectedCase& one) { cases.push_back(std::move(one)); });
+  const auto case_of = [&](std::size_t i) {
+    const InjectedDataset& one = injected[which[i]];
+    InjectedCase result = judged(reference, analyst, one, kind.value_or(one.kind));
+    result.injected = which[i];
+    return result;
+  };
+  std::ranges::move(in_parallel<InjectedCase>(which.size(), threads, case_of), std::back_inserter(cases));
 }
 
 /// Of datasets with a disagreement: elsewhere no probability is told.
@@ -89,93 +84,9 @@ stats::Reliability reliability_of(const SelftestResult& result) {
   return labels.empty() ? stats::Reliability{} : stats::reliability(probabilities, labels);
 }
 
-void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
-  Rate alarm{alarm_on_nothing}, named{"a name although nothing is hidden"};
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::nothing) continue;
-    alarm.count(c.seen());
-    named.count(c.verdict == Verdict::named);
-  }
-  rates.insert(rates.end(), {alarm, named});
-}
-
-void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
-  Rate power{disagreement_seen}, exact{exact_name}, family{"the right family, given a disagreement"},
-      named{"a name, given a disagreement"}, right{"the right name, given a name"}, wrong{wrong_name},
-      wrong_family{"one wrong family"}, in_set{"the truth in the set, given a disagreement"},
-      none{"none in the catalogue, given a disagreement"}, coverage{"parameters within their 90 % intervals"};
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::one) continue;
-    power.count(c.seen());
-    wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
-    wrong_family.count(c.family.has_value() && c.family != effects::find(c.truth).info.family);
-    coverage.hits += c.n_covered;
-    coverage.of += c.n_parameters;
-    if (!c.seen()) continue;
-    exact.count(is_named(c, c.truth));
-    named.count(c.verdict == Verdict::named);
-    if (c.verdict == Verdict::named) right.count(is_named(c, c.truth));
-    family.count(c.family == effects::find(c.truth).info.family);
-    in_set.count(contains(c.named, c.truth));
-    none.count(c.verdict == Verdict::none_in_catalogue);
-  }
-  rates.insert(rates.end(), {power, exact, family, named, right, wrong, wrong_family, in_set, none, coverage});
-}
-
-void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
-  const std::string lacks = "an effect that the catalogue lacks",
-                    none_told = "none in the catalogue, given a disagreement";
-  // Of those that the whole catalogue doesn't name, others are as good as nested.
-  Rate seen{lacks + ": a disagreement seen"}, none{lacks + ": called " + none_told},
-      told_none{lacks + " and the whole one names: called " + none_told}, misnamed{lacks + ": called by one name"},
-      outside{lacks + ": called by one name of another family"};
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::left_out) continue;
-    const bool is_family = c.family == effects::find(c.truth).info.family;
-    seen.count(c.seen());
-    misnamed.count(c.verdict == Verdict::named);
-    outside.count(c.verdict == Verdict::named && !is_family);
-    if (!c.seen()) continue;
-    none.count(c.verdict == Verdict::none_in_catalogue);
-    if (is_named(result.cases[c.injected], c.truth)) told_none.count(c.verdict == Verdict::none_in_catalogue);
-  }
-  if (seen.of > 0) rates.insert(rates.end(), {seen, none, told_none, misnamed, outside});
-}
-
-void count_motion(const SelftestResult& result, std::vector<Rate>& rates) {
-  Rate as_sensor{"people's motion, in the catalogue or not: called by a name of optics or electronics"};
-  for (const InjectedCase& c : result.cases) {
-    const bool is_catalogued = c.kind == CaseKind::one || c.kind == CaseKind::left_out;
-    if (!is_catalogued || effects::find(c.truth).info.family != effects::Family::motion) continue;
-    const bool is_sensor = c.family == effects::Family::optics || c.family == effects::Family::electronics;
-    as_sensor.count(c.verdict == Verdict::named && is_sensor);
-  }
-  if (as_sensor.of > 0) rates.push_back(as_sensor);
-}
-
-void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
-  Rate one{"two effects, first look: one or both in the set, given a disagreement"},
-      none{"two effects, first look: no single effect will do, given a disagreement"},
-      wrong{"two effects, first look: one wrong name"};
-  for (const InjectedCase& c : result.cases) {
-    if (c.kind != CaseKind::two) continue;
-    const auto is_hidden = [&](const std::string& name) {
-      return std::ranges::find(c.effects, name, &EffectSpec::name) != c.effects.end();
-    };
-    const bool any = std::ranges::any_of(c.named, is_hidden);
-    wrong.count(c.verdict == Verdict::named && !any);
-    if (!c.seen()) continue;
-    one.count(any);
-    none.count(c.verdict == Verdict::none_in_catalogue);
-  }
-  if (wrong.of > 0) rates.insert(rates.end(), {one, none, wrong});
-}
-
 bool names_other(const std::string& effect, const std::string& other) {
   return contains(effects::find(effect).info.confused_with, other);
 }
-
-const std::string& fingerprint_of(const std::string& effect) { return effects::find(effect).info.fingerprint; }
 
 }  // namespace
 
@@ -197,8 +108,7 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
     return Analyst(view, {analysis.alpha, analysis.trees, left_out}, context);
   };
   SelftestResult result;
-  for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
-    result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
+  result.hypotheses = reference.table.hypotheses();
   context.begin("judging");
   std::vector<std::size_t> all = stats::numbers_to(injected.size());
   judge_all(reference, analyst_without({}), injected, all, {}, context.threads, result.cases);
@@ -223,12 +133,73 @@ SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const 
 }
 
 std::vector<Rate> rates_of(const SelftestResult& result) {
+  using Case = InjectedCase;
   std::vector<Rate> rates;
-  count_nulls(result, rates);
-  count_injected(result, rates);
-  count_left_out(result, rates);
-  count_motion(result, rates);
-  count_pairs(result, rates);
+  const auto count = [&](CaseKind kind, std::string what, const auto& is_asked, const auto& is_hit) {
+    Rate& rate = rates.emplace_back(Rate{std::move(what)});
+    for (const Case& c : result.cases) {
+      if (c.kind == kind && is_asked(c)) rate.count(is_hit(c));
+    }
+  };
+  const auto any = [](const Case&) { return true; };
+  const auto seen = [](const Case& c) { return c.seen(); };
+  const auto named = [](const Case& c) { return c.verdict == Verdict::named; };
+  const auto none = [](const Case& c) { return c.verdict == Verdict::none_in_catalogue; };
+  const auto right = [](const Case& c) { return is_named(c, c.truth); };
+  const auto right_family = [](const Case& c) { return c.family == effects::find(c.truth).info.family; };
+  count(CaseKind::nothing, alarm_on_nothing, any, seen);
+  count(CaseKind::nothing, "a name although nothing is hidden", any, named);
+
+  count(CaseKind::one, disagreement_seen, any, seen);
+  count(CaseKind::one, exact_name, seen, right);
+  count(CaseKind::one, "the right family, given a disagreement", seen, right_family);
+  count(CaseKind::one, "a name, given a disagreement", seen, named);
+  count(CaseKind::one, "the right name, given a name", named, right);
+  count(CaseKind::one, wrong_name, any, [&](const Case& c) { return named(c) && !right(c); });
+  count(CaseKind::one, "one wrong family", any, [&](const Case& c) { return c.family && !right_family(c); });
+  count(CaseKind::one, "the truth in the set, given a disagreement", seen,
+        [](const Case& c) { return contains(c.named, c.truth); });
+  count(CaseKind::one, "none in the catalogue, given a disagreement", seen, none);
+  Rate& coverage = rates.emplace_back(Rate{"parameters within their 90 % intervals"});
+  for (const Case& c : result.cases) {
+    if (c.kind != CaseKind::one) continue;
+    coverage.hits += c.n_covered;
+    coverage.of += c.n_parameters;
+  }
+
+  if (contains(result.cases, CaseKind::left_out, &Case::kind)) {
+    const std::string lacks = "an effect that the catalogue lacks",
+                      none_told = "none in the catalogue, given a disagreement";
+    count(CaseKind::left_out, lacks + ": a disagreement seen", any, seen);
+    count(CaseKind::left_out, lacks + ": called " + none_told, seen, none);
+    // Of those that the whole catalogue doesn't name, others are as good as nested.
+    count(
+        CaseKind::left_out, lacks + " and the whole one names: called " + none_told,
+        [&](const Case& c) { return c.seen() && right(result.cases[c.injected]); }, none);
+    count(CaseKind::left_out, lacks + ": called by one name", any, named);
+    count(CaseKind::left_out, lacks + ": called by one name of another family", any,
+          [&](const Case& c) { return named(c) && !right_family(c); });
+  }
+
+  Rate as_sensor{"people's motion, in the catalogue or not: called by a name of optics or electronics"};
+  for (const Case& c : result.cases) {
+    const bool is_catalogued = c.kind == CaseKind::one || c.kind == CaseKind::left_out;
+    if (!is_catalogued || effects::find(c.truth).info.family != effects::Family::motion) continue;
+    const bool is_sensor = c.family == effects::Family::optics || c.family == effects::Family::electronics;
+    as_sensor.count(named(c) && is_sensor);
+  }
+  if (as_sensor.of > 0) rates.push_back(as_sensor);
+
+  if (contains(result.cases, CaseKind::two, &Case::kind)) {
+    const auto in_set = [](const Case& c) {
+      return std::ranges::any_of(c.named,
+                                 [&](const auto& name) { return contains(c.effects, name, &EffectSpec::name); });
+    };
+    const std::string two = "two effects, first look: ";
+    count(CaseKind::two, two + "one or both in the set, given a disagreement", seen, in_set);
+    count(CaseKind::two, two + "no single effect will do, given a disagreement", seen, none);
+    count(CaseKind::two, two + "one wrong name", any, [&](const Case& c) { return named(c) && !in_set(c); });
+  }
   return rates;
 }
 
@@ -260,10 +231,18 @@ std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double le
     const auto& [a, b] = names;
     const Rate rate{"taken for each other", hits, cases[a] + cases[b]};
     if (hits < fewest_cases || rate.value() < least_share) continue;
-    pairs.push_back({a, b, rate, names_other(a, b) || names_other(b, a), fingerprint_of(a), fingerprint_of(b)});
+    pairs.push_back({a, b, rate, names_other(a, b) || names_other(b, a)});
   }
   std::ranges::stable_sort(pairs, std::ranges::greater{}, [](const ConfusedPair& pair) { return pair.rate.value(); });
   return pairs;
+}
+
+std::vector<std::vector<double>> shares_of_rows(std::vector<std::vector<double>> counts) {
+  for (std::vector<double>& row : counts) {
+    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
+    for (double& value : row) value = sum > 0.0 ? value / sum : 0.0;
+  }
+  return counts;
 }
 
 std::vector<std::vector<double>> confusion_of(const SelftestResult& result) {
@@ -277,12 +256,7 @@ std::vector<std::vector<double>> confusion_of(const SelftestResult& result) {
       shares[index(c.truth)][index(c.likeliest)] += 1.0;
     }
   }
-  for (std::vector<double>& row : shares) {
-    double sum = 0.0;
-    for (const double value : row) sum += value;
-    for (double& value : row) value = sum > 0.0 ? value / sum : 0.0;
-  }
-  return shares;
+  return shares_of_rows(std::move(shares));
 }
 
 }  // namespace pirsim::reconcile

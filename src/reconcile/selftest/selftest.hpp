@@ -63,13 +63,13 @@ struct InjectedCase {
   Strength strength = Strength::none;
   std::vector<EffectSpec> effects;
   Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::string> named;         ///< or not to be told apart
-  std::optional<effects::Family> family;  ///< of the named effect, or one whose effects together are sure
-  std::string likeliest;                  ///< hypothesis with the greatest probability
-  std::vector<double> probabilities;      ///< (n_hypotheses) as SelftestResult::hypotheses
-  double p = 1.0;                         ///< of the global test
-  std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
-  std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
+  std::vector<std::string> named = {};         ///< or not to be told apart
+  std::optional<effects::Family> family = {};  ///< of the named effect, or one whose effects together are sure
+  std::string likeliest = {};                  ///< hypothesis with the greatest probability
+  std::vector<double> probabilities = {};      ///< (n_hypotheses) as SelftestResult::hypotheses
+  double p = 1.0;                              ///< of the global test
+  std::size_t n_parameters = 0;                ///< fitted, if the right effect was named
+  std::size_t n_covered = 0;                   ///< of them, whose interval holds the truth
 
   std::size_t injected = 0;  ///< which dataset it is of those that were injected
 
@@ -124,12 +124,13 @@ struct SelftestResult {
 /// Two effects that are often taken for each other.
 struct ConfusedPair {
   std::string first, second;
-  Rate rate;                            ///< either taken for the other, of both one's cases with a disagreement
-  bool expected = false;                ///< the catalogue names one as confused with the other
-  std::string first_does, second_does;  ///< fingerprints
+  Rate rate;              ///< either taken for the other, of both one's cases with a disagreement
+  bool expected = false;  ///< the catalogue names one as confused with the other
 };
 /// Pairs whose share is at least so great, in three cases or more; the most confused first.
 [[nodiscard]] std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share = 0.1);
+/// Each row divided by its sum, if that isn't 0.
+[[nodiscard]] std::vector<std::vector<double>> shares_of_rows(std::vector<std::vector<double>> counts);
 /// (n_hypotheses x n_hypotheses) row: truth, column: likeliest hypothesis; shares of the row, of cases with a
 /// disagreement.
 [[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);

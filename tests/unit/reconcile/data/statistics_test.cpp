@@ -170,7 +170,6 @@ TEST_CASE("motion is told by the sixth and the eighteenth of the time in which i
   CHECK(slice(2) == 1.0F);
   CHECK(slice(3) == 0.0F);
   CHECK(slice(16) == 1.0F);
-  CHECK(name(TrialStatistic::slice_18) == "slice_18");
 }
 
 TEST_CASE("a sensor that repeats another shows in the pair and not the other way round", "[statistics]") {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "files/disk/file.hpp"
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
@@ -14,13 +15,30 @@ TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reco
   const TemporaryFolder folder;
   TableStore store(folder.path(), "key");
   TableChunk chunk;
-  chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {}, {}}}}, {}});
+  const Series run{2, 3, 1, 4, {1, 0, 0, 1, 1, 1, 0, 0, 1, 0, 1, 0}};
+  chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {{"sensor", "PIR1"}}, {}}}}, {run}});
+  chunk.n_left_out = 5;
   store.keep(3, chunk);
-  REQUIRE(store.find(3)->datasets.size() == 1);
+  const TableChunk kept = *store.find(3);
+  REQUIRE(kept.datasets.size() == 1);
+  const TableRow& row = kept.datasets.front().row;
+  CHECK((row.hypothesis == 1 && row.realization == 7 && kept.n_left_out == 5));
+  CHECK(row.effects.front().name == "dead_time");
+  CHECK(row.effects.front().parameters == chunk.datasets.front().row.effects.front().parameters);
+  CHECK(row.effects.front().choices == chunk.datasets.front().row.effects.front().choices);
+  CHECK(kept.datasets.front().runs == std::vector{run});
   const std::filesystem::path file = folder.path() / "realizations_0003.bin";
-  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 9);
-  CHECK_THROWS_AS(store.find(3), Error);
-  CHECK_THROWS_WITH(store.find(3), contains(file.string()) && contains("ends too early") && contains("remove"));
+  const std::string bytes = io::read_text_file(file);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    io::write_text_file(file, damaged);
+    CHECK_THROWS_AS(store.find(3), Error);
+  }
+  for (const std::size_t n : {bytes.size() - 9, std::size_t{0}}) {
+    std::filesystem::resize_file(file, n);
+    CHECK_THROWS_WITH(store.find(3), contains(file.string()) && contains("is damaged") && contains("remove"));
+  }
   store.keep(2, chunk);
   std::filesystem::rename(folder.path() / "realizations_0002.bin", file);
   CHECK_THROWS_WITH(store.find(3), contains("of other realizations"));

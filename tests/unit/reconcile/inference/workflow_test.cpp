@@ -5,11 +5,9 @@
 #include <iterator>
 #include <set>
 
-#include "engine/effects/catalogue.hpp"
 #include "engine/sim/compiled_study.hpp"
 #include "model/core/random.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/verify.hpp"
@@ -89,21 +87,6 @@ TEST_CASE("a realization is a pure function of seed and index and stays within t
   CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
 }
 
-TEST_CASE("effects on a remembered realization give what a study with them gives",
-          "[reconcile][minutes][three-seats]") {
-  const ReferenceStudy& reference = reference_study();
-  const SimulatedRealization realization(reference.source, reference.frame, 5, 1);
-  ScriptSpec script = realization.drawn().script;
-  script.effects = {many_false_triggers};
-  const Model model = compile(realization.drawn().scene, script);
-  const auto data = realization.with_effects(script.effects, 0, 1);
-  REQUIRE(data->size() == 3);
-  for (std::uint32_t run = 0; run < 3; ++run) {
-    const RunResult result = run_once(model, run);
-    CHECK((*data)[run] == *series_of(reference.frame, 1, result.trial, result.samples));
-  }
-}
-
 TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks",
           "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
@@ -176,28 +159,6 @@ TEST_CASE("an injected effect is located and named and nothing is not", "[reconc
     alarms += analyst().analyse(injected(100 + i, {})).verdict == Verdict::no_disagreement ? 0 : 1;
   }
   CHECK(alarms <= 5);
-}
-
-TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][minutes][three-seats]") {
-  ReferenceStudy shuffled = reference_study();
-  Stream stream({5, 0, 0, Purpose::test});
-  std::vector<TableRow>& rows = shuffled.table.rows;
-  for (std::size_t i = rows.size(); i > 1; --i) {
-    TableRow &a = rows[i - 1], &b = rows[stream.index(static_cast<std::uint32_t>(i))];
-    std::swap(a.hypothesis, b.hypothesis);
-    std::swap(a.effects, b.effects);
-  }
-  const TableView shuffled_view(shuffled, all_trials(shuffled.frame), 0);
-  const HypothesisClassifier& honest = analyst().classifier();
-  const HypothesisClassifier confused(shuffled_view, {0.05, 60}, {});
-  double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
-  for (std::uint32_t i = 0; i < 10; ++i) {
-    const std::vector<float> data = injected(200 + i, {many_false_triggers});
-    sure_of_truth += honest.probabilities(data)[1] / 10.0;
-    sure_of_truth_when_confused += confused.probabilities(data)[1] / 10.0;
-  }
-  CHECK(sure_of_truth > 0.75);
-  CHECK(sure_of_truth_when_confused < 0.5);
 }
 
 TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile][minutes][three-seats]") {
@@ -277,14 +238,6 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
   std::ranges::sort(all);
   CHECK(all == trials);
   CHECK(folds_of(digest, {3, 4}, 5).size() == 2);
-}
-
-TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][minutes][three-seats]") {
-  const ReferenceStudy& reference = reference_study();
-  const FeatureMap map(reference.frame, reference.knowledge,
-                       reference.table.statistics.select_rows(rows_of(reference.table, 0, Subset::training)), {1});
-  const std::vector<float> nothing_measured(n_statistics(reference.frame), std::nanf(""));
-  CHECK(map.features(nothing_measured).size() == map.names().size());
 }
 
 TEST_CASE("a held-out trial has no part in features and names", "[reconcile][minutes][three-seats]") {
