@@ -239,6 +239,41 @@ TEST_CASE("noise grows as the root of the rate, and to the corners", "[sim][arra
   CHECK(sizes[384] == Approx(0.39).epsilon(0.25));  // in the median
 }
 
+TEST_CASE("noise is normal, and of pixels, frames, runs and arrays of their own", "[sim][array]") {
+  ArraySpec spec = silent(grid_eye(1));
+  spec.netd_k = 1.0;
+  spec.rate_hz = 1.0;
+  SceneSpec scene = before_a_wall(spec);
+  scene.arrays.push_back(scene.arrays.front());
+  scene.arrays.back().id = "A2";
+  const Eye eye(scene);
+  const sim::ThermalArray other(scene, 1, sensing(), 1, eye.room, {});
+  constexpr int n_frames = 1000, n = 64 * n_frames;
+  const std::vector<double> celsius(64, room_c);
+  const auto series = [&](const sim::ThermalArray& array, std::uint32_t run) {
+    std::vector<float> all(n);
+    for (int i = 0; i < n_frames; ++i)
+      array.read(celsius, run, i + 1, sim::ThermalArray::Pages::all, std::span(all).subspan(64U * i, 64));
+    return all;
+  };
+  const std::vector<float> noise = series(eye.array, 0);
+  const auto z = [](float value) { return static_cast<double>(value) - room_c; };
+  for (const double limit : {0.5, 1.0, 2.0, 3.0}) {
+    const double share = std::erfc(limit / std::sqrt(2.0)), error = std::sqrt(share * (1.0 - share) / n);
+    const auto beyond = std::ranges::count_if(noise, [&](float value) { return std::abs(z(value)) > limit; });
+    CHECK(std::abs(static_cast<double>(beyond) / n - share) < 4.0 * error);  // one: 0.2 % at 0.5, 7.6 % at 3
+  }
+  const auto correlation = [&](const std::vector<float>& b, std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < n; ++i) sum += z(noise[i]) * z(b[i + lag]) / n;
+    return sum * std::sqrt(n);  // in standard errors
+  };
+  for (const std::size_t lag : {1U, 2U, 7U, 8U, 63U, 64U, 65U}) CHECK(std::abs(correlation(noise, lag)) < 4.0);
+  CHECK(std::abs(correlation(series(eye.array, 1), 0)) < 4.0);
+  CHECK(std::abs(correlation(series(other, 0), 0)) < 4.0);
+  CHECK(correlation(series(eye.array, 0), 0) > 200.0);
+}
+
 namespace {
 
 SceneSpec room_with(const std::string& model, const Frame& frame) {
