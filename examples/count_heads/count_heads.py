@@ -2,8 +2,9 @@
 
 Each room of rooms.yaml is simulated with 0 to 5 people, who sit and work, or stand. Threshold and size of a blob are
 chosen on half of the rooms, the error is that in the others, beside a counter that always says the same number and one
-that sees the two PIR sensors of the same rooms. `count_heads.py ROOMS [MODEL]`: of so many rooms (default 40), with
-another array (AMG8833).
+that sees the two PIR sensors of the same rooms. `count_heads.py ROOMS [MODEL [FILE...]]`: of so many rooms (default
+40), with another array (AMG8833); then the same counter, as it has learned, on files of thermo-presence's frames (.h5;
+github.com/PUTvision/thermo-presence, needs pandas and tables).
 """
 import pathlib
 import random
@@ -53,6 +54,14 @@ def blobs(frame, threshold_k, area):
     return int(sum(max(1, round(size / area)) for size in sizes if size >= 0.25 * area))
 
 
+def public_frames(file):
+    """Frames less their own median, and how many people are in each; a table's rows have `data` and people's `points`."""
+    import pandas
+    table = pandas.read_hdf(file)
+    frames = np.stack(table["data"].to_list()).astype(float)
+    return frames - np.nanmedian(frames, axis=(1, 2), keepdims=True), np.array([len(each) for each in table["points"]])
+
+
 def error(guess, truth):
     return float(np.mean(np.abs(np.asarray(guess, float) - truth)))
 
@@ -87,7 +96,11 @@ def main():
     pir = np.rint(by_pir)
     print(f"{len(train)} frames of {n_rooms - n_rooms // 2} rooms to learn from, {len(test)} of {n_rooms // 2} others")
     print(f"threshold {best[0]:.1f} K, {best[1]:.0f} pixels a person")
-    for name, guess in (("constant", np.full(len(truth), np.median(known))), ("PIR", pir), ("blobs", guesses)):
+    lines = [("constant", np.full(len(truth), np.median(known)), truth), ("PIR", pir, truth), ("blobs", guesses, truth)]
+    for file in sys.argv[3:]:
+        frames, people = public_frames(file)
+        lines.append((pathlib.Path(file).stem, np.array([blobs(frame, *best) for frame in frames]), people))
+    for name, guess, truth in lines:
         print(f"{name:9} mean error {error(guess, truth):.2f} +- {np.std(np.abs(guess - truth)) / len(truth) ** 0.5:.2f} "
               f"people, right {np.mean(guess == truth):.0%}")
 

@@ -28,7 +28,9 @@ namespace pirsim::studies {
 namespace {
 
 SceneSpec without_noise(SceneSpec scene) {
-  for (auto& [id, model] : scene.sensor_models) model.detector.amplifier.noise_v_pp = 0.0;
+  for (auto& [id, model] : scene.sensor_models) {
+    if (!model.array && model.response != Response::beam) model.detector.amplifier.noise_v_pp = 0.0;
+  }
   return scene;
 }
 

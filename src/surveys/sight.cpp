@@ -461,11 +461,14 @@ std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
   constexpr double least_of_area = 0.1;  // assumed (0.05-0.2): a sensor in a corner sees more, one in a doorway too
   if (is_told_of_unit(scene)) return {};
   GroupedWarnings blind;
+  bool is_any = false, ends_at_room = false;
   for (const SensorSight& sight : report.sensors) {
     const auto sensor = std::ranges::find(scene.sensors, sight.sensor, &SensorSpec::id);
     const bool is_beam =  // which crosses a door, not the floor
         sensor != scene.sensors.end() && scene.sensor_models.at(sensor->model).response == Response::beam;
     if (is_beam) continue;
+    is_any = true;
+    ends_at_room = ends_at_room || sight.rays_cut > 0;
     if (sight.sees_nothing()) {
       note_blind(sight, scene.name, blind);
     } else if (static_cast<double>(sight.area_seen) < least_of_area * static_cast<double>(sight.area_places)) {
@@ -478,8 +481,7 @@ std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
   }
   Diagnostics remarks;
   blind.tell(remarks);
-  const auto cut = [](const SensorSight& sight) { return sight.rays_cut > 0; };
-  if (!report.sensors.empty() && std::ranges::none_of(report.sensors, cut)) {
+  if (is_any && !ends_at_room) {
     remarks.warning({scene.name, 0, 0},
                     "no ray of any sensor ends at the room: without walls sensors see people outside, too");
   }

@@ -195,6 +195,39 @@ class Shards(Case):
         self.assertIn("use --shard auto/5", fault)
 
 
+class Frames(Case):
+    """Frames of thermal arrays are files of their own, a run each: cut, stopped and resumed with the rows."""
+
+    def test_shards_threads_and_a_kill_change_no_frame(self):
+        room = self.folder / "room.gltf"
+        text = (DATA / "rooms" / "meeting_room.gltf").read_text()
+        room.write_text(text.replace("EKMC1604111", "AMG8833", 1))
+
+        def command(name, *args, ending=".csv"):
+            return list(map(str, [PIRSIM, "--scene", room, "--script", DATA / "studies" / "studyA.yaml", "--replicates", 2,
+                                  "-q", "--frames", self.folder / name, "-o", self.folder / f"{name}_rows{ending}", *args]))
+
+        def frames(name):
+            return {path.name: path.read_bytes() for path in (self.folder / name).iterdir()}
+
+        call(command("one", "--threads", 1))
+        whole = frames("one")
+        self.assertEqual((len(whole), len(set(whole.values()))), (2 * 10, 2 * 10))  # each has noise of its own
+        call(command("four", "--threads", 4))
+        self.assertEqual(frames("four"), whole)
+        for i in (3, 1, 2):
+            call(command("shards", "--shard", f"{i}/3", ending=""))
+        self.assertEqual(frames("shards"), whole)
+        process = subprocess.Popen(command("killed", "--threads", 1))
+        while process.poll() is None and not list(self.folder.glob("killed/*_2.npy")):
+            time.sleep(0.001)
+        process.kill()
+        self.assertEqual(process.wait(), -signal.SIGKILL)
+        self.assertLess(len(list(self.folder.glob("killed/*.npy"))), len(whole))
+        call(command("killed", "--threads", 1, "--resume"))
+        self.assertEqual(frames("killed"), whole)
+
+
 class Occupants(Case):
     """Who is where is cut, stopped and joined as rows are."""
 

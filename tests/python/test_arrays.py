@@ -78,7 +78,7 @@ rooms:
     width_m: 5
     depth_m: 5
     seats: 6
-    sensors: [{mount: ceiling, count: 1, model: AMG8833}, {mount: corner, count: 1}]
+    sensors: [{mount: ceiling, count: 1, model: MLX90640-BAA}, {mount: corner, count: 1}]
 days: 1
 frames: true
 sensing: {frame_rate_hz: 0.1, tick_rate_hz: 10, window_s: 10}
@@ -86,7 +86,7 @@ schedule: {first_day: "2026-03-02", from: "09:00", to: "10:00", meetings: {}}
 """)
     pirsim.dataset(recipe, tmp_path / "set")
     frames = np.load(tmp_path / "set/frames/room_0001/day_01_ARRAY1.npy")
-    assert frames.shape == (360, 8, 8) and frames.dtype == np.dtype("<f4")
+    assert frames.shape == (360, 24, 32) and frames.dtype == np.dtype("<f4")
     assert (tmp_path / "set/rows/room_0001/day_01.csv.gz").exists()
     room, study = tmp_path / "set/rooms/room_0001.gltf", tmp_path / "set/scripts/room_0001/day_01.yaml"
     command("run", "--scene", room, "--script", study, "-o", tmp_path / "rows.csv", "--frames", tmp_path / "frames",
@@ -96,13 +96,13 @@ schedule: {first_day: "2026-03-02", from: "09:00", to: "10:00", meetings: {}}
     assert np.allclose(np.loadtxt(stack.with_suffix(".frame.csv"), delimiter=","), frames[179], atol=0.005)
     result = pirsim.run(pirsim.compile(room, study), frames=True)
     assert np.array_equal(result.frames["ARRAY1"][0], frames)
-    assert "ARRAY1: 8 x 8 pixels, noise 0.02 K" in command("check", "--scene", room, "--script", study)
+    assert "ARRAY1: 32 x 24 pixels, noise 0.02 K" in command("check", "--scene", room, "--script", study)
     page = tmp_path / "run.html"
     command("view", "--scene", room, "--script", study, "--to", "09:01", "-o", page, "-q")
     packed = re.search(r'id="data">([^<]*)<', page.read_text())[1]
     array, = json.loads(gzip.decompress(base64.b64decode(packed)))["arrays"]
-    assert (array["id"], array["rows"], array["columns"]) == ("ARRAY1", 8, 8)
-    pixels = np.frombuffer(base64.b64decode(array["bytes"]), np.uint8).reshape(-1, 8, 8)
+    assert (array["id"], array["rows"], array["columns"]) == ("ARRAY1", 24, 32)
+    pixels = np.frombuffer(base64.b64decode(array["bytes"]), np.uint8).reshape(-1, 24, 32)
     shown = array["lowest_c"] + (pixels[array["at_key"][-1]] - 1.0) * array["step_k"]
     assert np.allclose(shown, frames[5], atol=array["step_k"])  # at second 60
 

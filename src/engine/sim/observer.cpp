@@ -236,6 +236,13 @@ void PowerMeter::explain(const std::vector<Actor>& actors, std::span<const LeafS
   }
 }
 
+bool PowerMeter::follow(const std::vector<Actor>& actors, std::span<const LeafStep> leaves) {
+  has_changed_ = false;
+  turn(leaves);
+  follow(actors);
+  return has_changed_;
+}
+
 void PowerMeter::follow(const std::vector<Actor>& actors) {
   // Of who is another person now, or left with the last run, nothing stays.
   moved_.clear();
@@ -272,6 +279,7 @@ void PowerMeter::take_away() {
 
 void PowerMeter::follow(std::span<const rt::Moved> moved) {
   tracer_->follow(moved, changes_);
+  has_changed_ = has_changed_ || !changes_.empty();
   for (const auto& [ray, before, after] : changes_) {
     powers_[power_.receiver_of(ray)] += power(ray, after) - power(ray, before);
   }

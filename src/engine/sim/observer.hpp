@@ -191,6 +191,9 @@ class PowerMeter {
   /// The same of one body alone, with leaves as before a run. solids: at most n_parts, as warm as the parts in their
   /// order.
   void measure(std::span<const PosedShape> solids, const BodyRadiance& radiance, std::span<PowerSteps> powers);
+  /// The same without a copy and without memory: whether powers() are others than before.
+  bool follow(const std::vector<Actor>& actors, std::span<const LeafStep> leaves);
+  [[nodiscard]] std::span<const PowerSteps> powers() const noexcept { return powers_; }
   /// Ray by ray.
   void explain(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::vector<PowerShare>& shares);
 
@@ -221,6 +224,7 @@ class PowerMeter {
   PostureMemory<PowerSteps> alone_;  ///< powers of postures of who was alone
   std::vector<Figure> figures_;      ///< (n_people)
   std::vector<PowerSteps> powers_;   ///< (n_receivers) of figures_
+  bool has_changed_ = false;         ///< powers_, since this was set
   // Scratch.
   std::vector<Mannequin> mannequins_;  ///< (n_people)
   std::vector<rt::Moved> moved_;

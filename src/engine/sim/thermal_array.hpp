@@ -86,8 +86,7 @@ class Camera {
   const ThermalArray& array_;
   std::uint32_t run_;
   PowerMeter meter_;
-  std::int64_t next_ = 0;                  ///< frame; 0: none was looked for yet
-  std::vector<PowerSteps> powers_, seen_;  ///< now, and when celsius_ was worked out
+  std::int64_t next_ = 0;  ///< frame; 0: none was looked for yet
   std::vector<double> celsius_;
   std::vector<float> last_;
   FrameStack frames_;

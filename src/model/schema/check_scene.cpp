@@ -16,6 +16,8 @@
 #include "model/geom/floor.hpp"
 #include "model/schema/checks.hpp"
 #include "model/schema/columns.hpp"
+#include "model/schema/fields.hpp"
+#include "model/schema/fingerprint.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
@@ -672,9 +674,34 @@ std::string corners_fault(const ZoneSpec& zone) {
   return left == 4 || right == 4 ? "" : "expected the corners of a convex area in order round it";
 }
 
+namespace {
+
+/// What a kind of sensor hasn't can't be set, as files refuse its keys.
+void check_kind(const SensorModelSpec& model, const SpecPath& path, SpecFaults& faults) {
+  const bool is_beam = model.response == Response::beam && !model.array;
+  const std::string kind = model.array ? "a thermal array" : is_beam ? "a beam" : "a PIR sensor";
+  each_field<SensorModelSpec>([&](const auto& field) {
+    const std::string_view name = field.name;
+    const bool is_of_all = name == "id" || name == "description" || name == "names" || name == "response";
+    const bool is_of_zones = name == "plane_m" || name == "clusters";
+    const bool is_its_own = model.array ? name == "array"
+                            : is_beam   ? is_of_zones || name == "idle_share"
+                                        : name != "idle_share";
+    if (is_of_all || is_its_own) return;
+    Fingerprint given, usual;
+    given.add(model.*field.member);
+    usual.add(SensorModelSpec{}.*field.member);
+    if (given.digest() != usual.digest())
+      faults.error(path.field(field.name), "is set, which " + kind + " doesn't have");
+  });
+}
+
+}  // namespace
+
 void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& faults) {
   if (model.id.empty()) faults.error(path.field("id"), "expected a text that isn't empty");
   faults.fields(model, path);
+  check_kind(model, path, faults);
   if (model.array) {
     faults.fields(*model.array, path.field("array"));
     return faults.together(*model.array, path.field("array"));

@@ -297,6 +297,17 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
             .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
 }
 
+TEST_CASE("keys of another kind of sensor are refused where they stand", "[sensor]") {
+  for (const auto& [model, line] :
+       {std::pair{"EKMC1604111", "idle_share: 0.8"}, std::pair{"EKMC1604111", "netd_k: 0.1"},
+        std::pair{"AMG8833", "idle_share: 0.8"}, std::pair{"AMG8833", "range_m: 5"},
+        std::pair{"LIGHT-BARRIER", "rows: 8"}, std::pair{"LIGHT-BARRIER", "report: {hold_s: 3}"}}) {
+    std::stringstream text;
+    text << line << '\n' << std::ifstream(sensors / (std::string(model) + ".yaml")).rdbuf();
+    CHECK(refusal_of_sensor(text.str()).find("f:1:") != std::string::npos);
+  }
+}
+
 TEST_CASE("a square facet without a pitch has the quad's, 1.0 mm between squares of 0.6 mm", "[sensor]") {
   const TemporaryFolder folder;
   const auto zones = [&](const std::string& pitch) {
