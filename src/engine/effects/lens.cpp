@@ -20,12 +20,16 @@ namespace {
 constexpr double rated_k =
     4.0;  // data sheet of the EKMC series: detection distance at 4 K between target and background
 
-void alter_thermal_contrast(StudyInForce& study, const EffectSpec& effect) {
-  SceneSpec& scene = study.scene;
-  const double factor = std::sqrt(effect.parameters.at("delta_t_k") / rated_k);
+/// Of PIR sensors: what a beam reaches depends on no temperature.
+void scale_ranges(SceneSpec& scene, double scale) {
   for (auto& [id, model] : scene.sensor_models) {
-    for (ClusterSpec& cluster : model.clusters) cluster.range_m *= factor;
+    if (model.response == Response::beam) continue;
+    for (ClusterSpec& cluster : model.clusters) cluster.range_m *= scale;
   }
+}
+
+void alter_thermal_contrast(StudyInForce& study, const EffectSpec& effect) {
+  scale_ranges(study.scene, std::sqrt(effect.parameters.at("delta_t_k") / rated_k));
 }
 
 Effect thermal_contrast() {
@@ -60,10 +64,7 @@ Effect thermal_contrast() {
 // range_scale: a lens reaches further than its data sheet promises, or less far.
 
 void alter_range_scale(StudyInForce& study, const EffectSpec& effect) {
-  SceneSpec& scene = study.scene;
-  for (auto& [id, model] : scene.sensor_models) {
-    for (ClusterSpec& cluster : model.clusters) cluster.range_m *= effect.parameters.at("scale");
-  }
+  scale_ranges(study.scene, effect.parameters.at("scale"));
 }
 
 Effect range_scale() {

@@ -233,13 +233,18 @@ TEST_CASE("faults of the data say what the data look like, and parameters have w
   CHECK(effects::phrase_of({"sensor", effects::ChoiceKind::sensor, {}, {}}, "PIR_1") == "sensor PIR_1");
 }
 
-TEST_CASE("a contrast of temperature is a factor of all ranges, its square root") {
+TEST_CASE("a contrast of temperature is a factor of all ranges but a beam's, its square root") {
   CHECK(effects::info("thermal_contrast").same_as == "range_scale");
   CHECK(effects::twins_of("range_scale") == std::vector<std::string>{"thermal_contrast"});
   const auto ranges_with = [](const EffectSpec& effect) {
     ScriptSpec script;
     script.effects = {effect};
-    const SceneSpec scene = effects::in_force(shipped_scene("meeting_room.gltf"), script).scene;
+    SceneSpec shipped = shipped_scene("meeting_room.gltf");
+    const SensorModelSpec barrier = shipped.sensor_models["barrier"] =
+        io::read_sensor_model(test::data("sensors/LIGHT-BARRIER.yaml"));
+    SceneSpec scene = effects::in_force(shipped, script).scene;
+    CHECK(scene.sensor_models.at("barrier").clusters.at(0).range_m == barrier.clusters.at(0).range_m);
+    scene.sensor_models.erase("barrier");
     std::vector<double> ranges;
     for (const auto& [id, model] : scene.sensor_models)
       for (const ClusterSpec& cluster : model.clusters) ranges.push_back(cluster.range_m);
