@@ -100,6 +100,9 @@ struct Settings {
 [[nodiscard]] Settings settings_of(const ScriptSpec& script, double alpha, double budget,
                                    const std::vector<std::string>& effects);
 
+/// Of a file; of "none", by which nothing is uncertain; of "" the usual one. Throws as io::read_nuisance() does.
+[[nodiscard]] NuisanceSpec nuisance_of(const std::filesystem::path& asked);
+
 /// What a caller may tell its user while it waits. Functions may be empty.
 struct Observer {
   std::function<void(const std::string& what)> stage;  ///< what the analysis does now, in a few words

@@ -27,10 +27,7 @@ struct Question {
 reconcile::Settings settings_of(const Question& question, const ScriptSpec& script) {
   reconcile::Settings settings = reconcile::settings_of(script, question.alpha, question.budget, question.effects);
   settings.max_effects = question.max_effects;
-  if (question.nuisance == "none") settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
-  if (question.nuisance != "none" && !question.nuisance.empty()) {
-    settings.nuisance = io::read_nuisance(question.nuisance);
-  }
+  settings.nuisance = reconcile::nuisance_of(question.nuisance);
   settings.table_folder = question.table;
   return settings;
 }

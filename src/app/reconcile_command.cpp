@@ -45,7 +45,7 @@ constexpr const char* folder_names = "-o,--output,--out";
 reconcile::Settings settings_of(const AnalysisOptions& options, const std::filesystem::path& output,
                                 const ScriptSpec& script) {
   reconcile::Settings settings = reconcile::settings_of(script, options.alpha, options.budget, options.effects);
-  settings.nuisance = nuisance_of(options.nuisance);
+  settings.nuisance = reconcile::nuisance_of(options.nuisance);
   settings.table_folder = options.table.empty() ? output / "table" : options.table;
   return settings;
 }

@@ -33,11 +33,6 @@ TracerKind tracer_kind(const std::string& name) {
 
 }  // namespace
 
-NuisanceSpec nuisance_of(const std::filesystem::path& asked) {
-  if (asked == "none") return {0.0, 0.0, 0.0, 0.0, 0.0};
-  return asked.empty() ? NuisanceSpec{} : io::read_nuisance(asked);
-}
-
 void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';

@@ -39,8 +39,6 @@ namespace pirsim::app {
 /// Error(usage) for an output in the place of what was read.
 [[nodiscard]] SceneSpec read_scene(const Inputs& inputs);
 [[nodiscard]] ScriptSpec read_script(const Inputs& inputs);
-/// Of --nuisance: a file, "none", or "" for the usual one.
-[[nodiscard]] NuisanceSpec nuisance_of(const std::filesystem::path& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 /// Of the room, by the study's `without`: who takes a shipped study for a room of their own may not expect it.
 void tell_what_is_left_out(const studies::CoverageStudy& study, Verbosity verbosity);

@@ -14,6 +14,7 @@
 #include "model/core/parallel.hpp"
 #include "model/core/random.hpp"
 #include "model/core/text.hpp"
+#include "model/schema/fields.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/data/data_check.hpp"
 #include "reconcile/data/measured.hpp"
@@ -525,6 +526,14 @@ class Loop {
 };
 
 }  // namespace
+
+NuisanceSpec nuisance_of(const std::filesystem::path& asked) {
+  if (asked.empty()) return {};
+  if (asked != "none") return io::read_nuisance(asked);
+  NuisanceSpec none;
+  each_field<NuisanceSpec>([&none](const auto& field) { none.*field.member = 0.0; });
+  return none;
+}
 
 Settings settings_of(const ScriptSpec& script, double alpha, double budget, const std::vector<std::string>& effects) {
   if (!(alpha >= 0.001 && alpha <= 0.5)) throw Error(ErrorCode::usage, "alpha: expected 0.001 to 0.5");

@@ -7,6 +7,7 @@
 
 #include "engine/sim/compiled_study.hpp"
 #include "model/core/random.hpp"
+#include "model/schema/fingerprint.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/locate.hpp"
@@ -85,6 +86,28 @@ TEST_CASE("a realization is a pure function of seed and index and stays within t
   const Realization exact = draw_realization(scene, script, {0, 0, 0, 0, 0}, 3, 17);
   CHECK(exact.scene.seats[2].world_from_seat == scene.seats[2].world_from_seat);
   CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
+}
+
+TEST_CASE("without nuisance every realization has the room and the people of the script", "[reconcile]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec script = short_study();
+  script.sensing.response = Response::analog;
+  const auto drawn = [&](const char* nuisance) {
+    Realization one = draw_realization(scene, script, nuisance_of(nuisance), 3, 17);
+    one.script.seed = script.seed;
+    return one;
+  };
+  const auto all_of = [](const auto& spec) {
+    Fingerprint fingerprint;
+    fingerprint.add(spec);
+    return fingerprint.digest();
+  };
+  const Realization exact = drawn("none"), usual = drawn("");
+  CHECK(all_of(exact.scene.seats) == all_of(scene.seats));
+  CHECK(exact.scene.sensors.front().gain == scene.sensors.front().gain);
+  CHECK(all_of(exact.script) == all_of(script));
+  CHECK(usual.script.sensing.ambient_c != script.sensing.ambient_c);
+  CHECK(usual.scene.sensors.front().gain != scene.sensors.front().gain);
 }
 
 TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks",
