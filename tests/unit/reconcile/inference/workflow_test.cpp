@@ -276,16 +276,20 @@ TEST_CASE("a held-out trial has no part in features and names", "[reconcile][min
 TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile][minutes][three-seats]") {
   const TemporaryFolder folder;
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
-  ScriptSpec hidden = short_study();
-  hidden.seed = 99;
-  hidden.effects = {many_false_triggers};
-  const Model model = compile(scene, hidden);
-  Measured measured;
-  measured.digest = sha256("hidden");
-  run_study(model, {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
-  });
-  const Settings settings = quick();
+  const auto measured_with = [&](std::uint64_t seed) {
+    ScriptSpec hidden = short_study();
+    hidden.seed = seed;
+    hidden.effects = {many_false_triggers};
+    Measured measured;
+    measured.digest = sha256("hidden");
+    run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
+      measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
+    });
+    return measured;
+  };
+  Settings settings = quick();
+  settings.table_folder = (folder.path() / "table").string();
+  const Measured measured = measured_with(99);
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::named);
   CHECK_THAT(all_details(outcome),
@@ -300,7 +304,15 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   CHECK(as_strange == Approx(std::round(as_strange)).margin(1e-9));
   REQUIRE(outcome.verification);
   CHECK(outcome.verification->after.energy_score < outcome.verification->before.energy_score);
-  CHECK(outcome.verification->share_closed > 0.7);
+  // Of one dataset of three trials the share scatters by 0.6 about 0.8 (seven seeds, standard error 0.2): the mean of
+  // five is beyond 0.3 but once in thirty, and none where nothing was open (verify_test.cpp).
+  double share = outcome.verification->share_closed;
+  for (std::uint64_t seed = 100; seed < 104; ++seed) {
+    const Outcome other = reconcile::reconcile(scene, short_study(), measured_with(seed), settings);
+    REQUIRE(other.verification);
+    share += other.verification->share_closed;
+  }
+  CHECK(share / 5.0 > 0.3);
   CHECK(outcome.candidates.size() == 3);
   for (const Candidate& candidate : outcome.candidates) CHECK_FALSE(in_words(candidate).empty());
   write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
