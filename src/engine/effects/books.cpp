@@ -45,9 +45,6 @@ std::unique_ptr<RowStage> make_dead_sensor(const EffectSpec& effect, const Stage
 
 void draw_dead_sensor(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
   effect.choices["sensor"] = scene.sensors[stream.index(static_cast<std::uint32_t>(scene.sensors.size()))].id;
-  if (stream.uniform() >= 0.5) return;  // assumed: half of them never say anything
-  effect.parameters["loss"] = 1.0;
-  effect.parameters["from_s"] = 0.0;
 }
 
 Effect dead_sensor() {
@@ -60,8 +57,7 @@ Effect dead_sensor() {
                    .as_if = "rows of a sensor were lost",
                    .confused_with = {"missed_triggers"},
                    .parameters = {told_as("share of rows lost", strength("loss", "", 1.0, 0.5, 1.0, 1.0, "assumed")),
-                                  detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7,
-                                         "assumed; half of those drawn are dead from the beginning")},
+                                  detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7, "assumed")},
                    .choices = {sensor_choice()},
                    .reach = Reach::rows,
                    .idle_in = {Survey::walk_test}},

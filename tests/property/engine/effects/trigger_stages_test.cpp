@@ -144,18 +144,6 @@ TEST_CASE("a trend is drawn for studies of five runs or more, and for no shorter
   CHECK(std::abs(n_growing(3) - 100) < 4.0 * std::sqrt(200 * 0.25));
 }
 
-TEST_CASE("half of the dead sensors that are drawn never say anything") {
-  const Bench bench;
-  Stream stream({1, 0, 0, Purpose::test});
-  int n = 0;
-  for (int i = 0; i < 400; ++i) {
-    const EffectSpec drawn = effects::draw_from_prior(effects::find("dead_sensor"), bench.scene, {}, stream);
-    n += drawn.parameters.at("loss") == 1.0 && drawn.parameters.at("from_s") == 0.0 ? 1 : 0;
-  }
-  CHECK(std::abs(n - 200) < 4.0 * std::sqrt(400 * 0.25));
-  CHECK_FALSE(std::abs(n - 150) < 4.0 * std::sqrt(400 * 0.25));  // must fail: three in eight
-}
-
 TEST_CASE("what is missed grows from run to run in equal steps about its mean") {
   constexpr std::uint32_t n_runs = 4;
   Bench bench;
