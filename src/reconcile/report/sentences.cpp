@@ -1,7 +1,6 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <string_view>
@@ -67,17 +66,24 @@ std::string alike(const DataFinding& finding, const std::string& how) {
 
 /// Where to look for the cause.
 std::string advice(What what) {
-  constexpr const char* of_two = "see which input each of the two columns was read from";
-  static constexpr std::array<const char*, data_finding_names.size()> all{
-      of_two,
-      of_two,
-      "see whether the output or its wire is stuck",
-      "see whether the logger writes its sign of life or its polling as motion",
-      "see how often the logger asks: if only so often, set window_s to that and resample the rows",
-      "see whether files were joined or saved under a wrong name; take one of the two places out",
-      "see whether anything was recorded then; leave fields empty that are unknown",
-      "see whether the sensor has power and its column is the right one"};
-  return all[static_cast<std::size_t>(what)];
+  switch (what) {
+    case What::equal_columns:
+    case What::opposite_columns:
+      return "see which input each of the two columns was read from";
+    case What::constant_column:
+      return "see whether the output or its wire is stuck";
+    case What::beats:
+      return "see whether the logger writes its sign of life or its polling as motion";
+    case What::polled:
+      return "see how often the logger asks: if only so often, set window_s to that and resample the rows";
+    case What::repeated_rows:
+      return "see whether files were joined or saved under a wrong name; take one of the two places out";
+    case What::all_silent:
+      return "see whether anything was recorded then; leave fields empty that are unknown";
+    case What::silent_column:
+      break;
+  }
+  return "see whether the sensor has power and its column is the right one";
 }
 
 using Names = std::vector<std::string>;

@@ -106,6 +106,7 @@ TEST_CASE("without nuisance every realization has the room and the people of the
   CHECK(all_of(exact.scene.seats) == all_of(scene.seats));
   CHECK(exact.scene.sensors.front().gain == scene.sensors.front().gain);
   CHECK(all_of(exact.script) == all_of(script));
+  CHECK(nuisance_of("none").time_s + nuisance_of("none").own_seats == 0.0);  // of counts, which this study hasn't
   CHECK(usual.script.sensing.ambient_c != script.sensing.ambient_c);
   CHECK(usual.scene.sensors.front().gain != scene.sensors.front().gain);
 }
