@@ -130,18 +130,24 @@ TEST_CASE("a trend is drawn for studies of five runs or more, and for no shorter
   const Bench bench;
   ScriptSpec script;
   script.trials.resize(2);
-  const auto n_growing = [&](int replicates) {
-    script.replicates = replicates;
-    Stream stream({1, 0, 0, Purpose::test});
-    int n = 0;
-    for (int i = 0; i < 200; ++i) {
-      const effects::Effect& missed = effects::find("missed_triggers");
-      n += effects::draw_from_prior(missed, bench.scene, script, stream).choices.at("trend") == "growing" ? 1 : 0;
-    }
-    return n;
-  };
-  CHECK(n_growing(2) == 0);
-  CHECK(std::abs(n_growing(3) - 100) < 4.0 * std::sqrt(200 * 0.25));
+  int n_effects = 0;
+  for (const effects::Effect* effect : effects::catalogue()) {
+    if (std::ranges::find(effect->info.choices, "trend", &effects::ChoiceInfo::name) == effect->info.choices.end())
+      continue;
+    CAPTURE(effect->info.name);
+    ++n_effects;
+    const auto n_growing = [&](int replicates) {
+      script.replicates = replicates;
+      Stream stream({1, 0, 0, Purpose::test});
+      int n = 0;
+      for (int i = 0; i < 200; ++i)
+        n += effects::draw_from_prior(*effect, bench.scene, script, stream).choices.at("trend") == "growing" ? 1 : 0;
+      return n;
+    };
+    CHECK(n_growing(2) == 0);
+    CHECK(std::abs(n_growing(3) - 100) < 4.0 * std::sqrt(200 * 0.25));
+  }
+  CHECK(n_effects == 3);
 }
 
 TEST_CASE("what is missed grows from run to run in equal steps about its mean") {
