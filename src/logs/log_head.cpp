@@ -13,6 +13,7 @@
 #include "files/disk/file.hpp"
 #include "files/read/csv_reader.hpp"
 #include "logs/log_proof.hpp"
+#include "logs/state_words.hpp"
 #include "logs/times.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/limits.hpp"
@@ -20,12 +21,6 @@
 
 namespace pirsim::io {
 namespace {
-
-constexpr std::array on_words{"on",  "true",     "yes",    "motion",   "motion detected", "motion_detected",
-                              "det", "detected", "active", "occupied", "moving"};
-constexpr std::array off_words{"off",          "false",    "no",     "clear",        "no motion",  "no_motion",
-                               "not detected", "inactive", "vacant", "not_detected", "unoccupied", "idle"};
-constexpr std::array unknown_words{"", "unavailable", "unknown", "none", "null", "nan", "na", "n/a", "<na>", "-", "?"};
 
 std::string small(std::string_view text) {
   std::string result(trimmed(text));

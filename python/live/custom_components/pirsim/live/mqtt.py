@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import logging
 import os
+import re
+import string
 import tempfile
 import time
 from dataclasses import dataclass
@@ -12,17 +14,21 @@ from typing import Any, Callable, Iterable
 
 import paho.mqtt.client as paho
 
-from . import __version__
+from . import __version__, words
 from .counter import ClockSteppedBack, Counter, Occupancy, State
 
 _log = logging.getLogger("pirsim_live")
 _KEYS = ("occupancy", "presence", "motion", "state")
-# The words that logs are read by: src/logs/log_head.cpp.
-_ON = {"1", "on", "true", "yes", "motion", "motion detected", "motion_detected", "det", "detected", "active", "occupied",
-       "moving"}
-_OFF = {"0", "off", "false", "no", "clear", "no motion", "no_motion", "not detected", "inactive", "vacant", "not_detected",
-        "unoccupied", "idle"}
+_NUMBER = re.compile(r"[+-]?([0-9]+[.,]?[0-9]*|[.,][0-9]+)(e[+-]?[0-9]+)?")
+_SMALL = str.maketrans(string.ascii_uppercase, string.ascii_lowercase)
 _UNHEARD_S = 300.0  # after which a sensor is told that has said nothing; assumed (1-30 min)
+
+
+def state_of_word(text: str) -> State:
+    """Motion, none, or unknown, as `pirsim log` reads words and numbers; unknown for what is neither."""
+    word = text.strip().translate(_SMALL)
+    number = float(word.replace(",", ".", 1)) if len(word) <= 24 and _NUMBER.fullmatch(word) else None
+    return True if word in words.ON or number == 1 else False if word in words.OFF or number == 0 else None
 
 
 def state_of(payload: bytes, key: str | None = None) -> State:
@@ -35,8 +41,7 @@ def state_of(payload: bytes, key: str | None = None) -> State:
         told = text
     if isinstance(told, dict):
         told = told[key or next((one for one in _KEYS if one in told), _KEYS[0])]
-    word = str(told).lower()
-    return True if word in _ON else False if word in _OFF else None
+    return state_of_word(str(told))
 
 
 @dataclass(frozen=True)
