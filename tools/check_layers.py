@@ -30,7 +30,7 @@ ROOMS = {
 }
 # public header -> the house, and room, that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
 PUBLIC = {
-    "error": "model/core", "input_file": "model/core", "interval": "model/core", "random": "model/core", "version": "model/core",
+    "error": "model/core", "dates": "model/core", "input_file": "model/core", "interval": "model/core", "random": "model/core", "version": "model/core",
     "geometry": "model/geom", "shapes": "model/geom", "rays": "model/geom",
     "sensor": "model/schema", "scene": "model/schema", "script": "model/schema", "schedule": "model/schema", "occupancy": "model/schema",
     "survey": "model/schema", "sample": "model/schema", "columns": "model/schema", "response": "model/schema",

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "pirsim/dates.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/input_file.hpp"
 #include "pirsim/sample.hpp"
@@ -35,8 +36,8 @@ struct LogMap {
     readings,  ///< of a wide log: a row every interval, whose values hold for that interval
     changes    ///< a row whenever something changed, whose values hold until the next row
   };
-  enum class Dates { found, month_first, day_first, year_first };  ///< of 12/01/2017, 12-01-17
-  enum class Stamps { end, begin };                                ///< which end of a reading its time stamp tells
+  using Dates = pirsim::Dates;
+  enum class Stamps { end, begin };  ///< which end of a reading its time stamp tells
   enum class Empty {
     found,
     unknown,   ///< an empty cell tells that the state isn't known

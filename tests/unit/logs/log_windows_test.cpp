@@ -19,17 +19,17 @@ char worse(char a, char b) {
   return order.find(a) > order.find(b) ? a : b;
 }
 
-struct Reading {
+struct OneReading {
   int s;
   char state;
 };
 
 /// By the definition: the readings whose stamps are in the window (begin, end], or the next one if none is; a lost
 /// reading is one that tells nothing.
-std::string twin_of_readings(std::vector<Reading> readings, int interval_s, int window_s) {
-  std::vector<Reading> all;
+std::string twin_of_readings(std::vector<OneReading> readings, int interval_s, int window_s) {
+  std::vector<OneReading> all;
   all.push_back({readings.front().s - interval_s, '.'});
-  for (const Reading& reading : readings) {
+  for (const OneReading& reading : readings) {
     for (int s = all.back().s + interval_s; all.size() > 1 && s < reading.s; s += interval_s) all.push_back({s, '.'});
     all.push_back(reading);
   }
@@ -80,7 +80,7 @@ TEST_CASE("windows of readings are what their definition says") {
   std::mt19937 random(7);
   for (int repeat = 0; repeat < 200; ++repeat) {
     const int interval = 1 + static_cast<int>(random() % 12);
-    std::vector<Reading> readings;
+    std::vector<OneReading> readings;
     std::string text = "time_s,A\n";
     const int first = static_cast<int>(random() % 40) + interval;
     for (int i = 0; i < 60; ++i) {

@@ -1,4 +1,4 @@
-#include "logs/times.hpp"
+#include "files/read/stamps.hpp"
 
 #include "support/catch.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t second = 1'000'000;
 
 /// Of a text that says a moment or a time of day.
-std::int64_t us(std::string_view text, LogMap::Dates order = LogMap::Dates::found) {
+std::int64_t us(std::string_view text, Dates order = Dates::found) {
   const auto stamp = parse_stamp(text, order);
   REQUIRE(stamp);
   CHECK(stamp->kind != Stamp::Kind::number);
@@ -29,8 +29,8 @@ TEST_CASE("moments as loggers write them") {
   CHECK(us("2025-4-6 18:00:01") == moment);
   CHECK(us("06.04.2025 18:00:01") == moment);
   CHECK(us("04/06/2025 6:00:01 PM") == moment);
-  CHECK(us("04/06/25 18:00:01", LogMap::Dates::month_first) == moment);
-  CHECK(us("06/04/2025 18:00:01", LogMap::Dates::day_first) == moment);
+  CHECK(us("04/06/25 18:00:01", Dates::month_first) == moment);
+  CHECK(us("06/04/2025 18:00:01", Dates::day_first) == moment);
   CHECK(us(" 2025-04-06 18:00 ") == moment - second);
   CHECK(us("2025-04-06T18:00:01.000Z") == moment);
   CHECK(us("2025-04-06T20:00:01+02:00") == moment);
@@ -40,7 +40,7 @@ TEST_CASE("moments as loggers write them") {
   CHECK(us("4/6/2025, 6:00:01 PM") == moment);
   CHECK(us("4/6/2025, 6:00:01\xE2\x80\xAFPM") == moment);
   CHECK(us("6.4.2025, 18:00:01") == moment);
-  CHECK(parse_stamp("2025-04-06T20:00:01+02:00", LogMap::Dates::found)->offset_s == 7200);
+  CHECK(parse_stamp("2025-04-06T20:00:01+02:00", Dates::found)->offset_s == 7200);
   CHECK(us("2010-11-04 00:03:50.209589") == 1288829030 * second + 209589);
 }
 
@@ -54,9 +54,9 @@ TEST_CASE("times of day, as spreadsheets leave them") {
 }
 
 TEST_CASE("numbers, also with a decimal comma") {
-  CHECK(parse_stamp("1743962401", LogMap::Dates::found)->number == 1743962401.0);
-  CHECK(parse_stamp("1,5", LogMap::Dates::found)->number == 1.5);
-  CHECK(parse_stamp("-3", LogMap::Dates::found)->kind == Stamp::Kind::number);
+  CHECK(parse_stamp("1743962401", Dates::found)->number == 1743962401.0);
+  CHECK(parse_stamp("1,5", Dates::found)->number == 1.5);
+  CHECK(parse_stamp("-3", Dates::found)->kind == Stamp::Kind::number);
 }
 
 TEST_CASE("what is no time") {
@@ -64,11 +64,10 @@ TEST_CASE("what is no time") {
        {"", "on", "2025-02-30T10:00", "2025-13-01", "2025-04-06T25:00", "24:00:01", "10:60:00", "13:00 PM", "0:30 AM x",
         "2025-04-06T18:00:01+15:00", "2025-04-06T18:00:01 Mars", "2025-04-06T", "1e999", "31/31/2025 10:00",
         "99999-01-01T00:00", "inf", "nan", "2025-04-06T18:0:01"})
-    CHECK_FALSE(parse_stamp(text, LogMap::Dates::found));
+    CHECK_FALSE(parse_stamp(text, Dates::found));
 }
 
 TEST_CASE("the order of day and month, where the date tells it") {
-  using Dates = LogMap::Dates;
   const auto order = [](const char* text) { return io::order_of_date(text).value().order; };
   CHECK(order("12/22/2017 0:00") == Dates::month_first);
   CHECK(order("22/12/2017") == Dates::day_first);
