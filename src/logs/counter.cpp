@@ -9,6 +9,7 @@
 
 #include "files/disk/file.hpp"
 #include "model/core/parallel.hpp"
+#include "model/core/text.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/counting.hpp"
 #include "pirsim/error.hpp"
@@ -235,127 +236,151 @@ constexpr double never_s = std::numeric_limits<double>::infinity();
 using Json = nlohmann::ordered_json;
 constexpr int format_version = 2;
 
-/// Probabilities in rows that add up to 1.
-std::vector<double> probabilities(const Json& json, std::size_t n_rows, std::size_t n_columns) {
-  const bool all_numbers = std::ranges::all_of(json, [](const Json& value) { return value.is_number(); });
-  if (!json.is_array() || !all_numbers) throw std::domain_error("a table isn't a list of numbers");
-  const auto values = json.get<std::vector<double>>();
-  if (values.size() != n_rows * n_columns) throw std::domain_error("a table has another size than its counts ask for");
-  for (std::size_t row = 0; row < n_rows; ++row) {
-    double sum = 0.0;
-    for (std::size_t column = 0; column < n_columns; ++column) {
-      const double value = values[row * n_columns + column];
-      if (!(value >= 0.0 && value <= 1.0)) throw std::domain_error("a probability isn't between 0 and 1");
-      sum += value;
+/// A value of a counter's file, and where in it. What isn't as it must be throws std::domain_error.
+class Told {
+ public:
+  explicit Told(const Json& json, std::string path = {}) : json_(&json), path_(std::move(path)) {}
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw std::domain_error(path_.empty() ? why : path_ + ": " + why);
+  }
+  [[nodiscard]] std::optional<Told> find(const std::string& key) const {
+    if (!json_->is_object()) refuse("expected an object");
+    const auto found = json_->find(key);
+    return found == json_->end() ? std::nullopt : std::optional(Told(*found, path_.empty() ? key : path_ + '.' + key));
+  }
+  [[nodiscard]] Told member(const std::string& key) const {
+    auto found = find(key);
+    if (!found) refuse("'" + key + "' is missing");
+    return *found;
+  }
+  [[nodiscard]] std::vector<Told> items() const {
+    if (!json_->is_array()) refuse("expected a list");
+    std::vector<Told> items;
+    for (std::size_t i = 0; i < json_->size(); ++i)
+      items.emplace_back((*json_)[i], path_ + '[' + std::to_string(i) + ']');
+    return items;
+  }
+  [[nodiscard]] std::vector<Told> items(std::size_t n) const {
+    auto found = items();
+    if (found.size() != n) refuse("expected " + std::to_string(n) + " values, got " + std::to_string(found.size()));
+    return found;
+  }
+  [[nodiscard]] bool is_null() const { return json_->is_null(); }
+  [[nodiscard]] double number(double least, double most) const {
+    const double value = json_->is_number() ? json_->get<double>() : nobody_knows;
+    if (value >= least && value <= most) return value;
+    refuse("expected a number" + (most < never_s ? " from " + shortest_number(least) + " to " + shortest_number(most)
+                                  : least > -never_s ? " from " + shortest_number(least)
+                                                     : ""));
+  }
+  [[nodiscard]] double positive() const {
+    const double value = number(0.0, std::numeric_limits<double>::max());
+    if (!(value > 0.0)) refuse("expected a number above 0");
+    return value;
+  }
+  [[nodiscard]] int whole(int least, int most) const {
+    if (json_->is_number_integer() && json_->get<double>() >= least && json_->get<double>() <= most)
+      return json_->get<int>();
+    refuse("expected a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  }
+  [[nodiscard]] std::string text() const {
+    if (!json_->is_string()) refuse("expected a text");
+    return json_->get<std::string>();
+  }
+  [[nodiscard]] bool operator==(int number) const { return *json_ == number; }
+
+  /// Probabilities, none below `least`, in rows that add up to 1.
+  [[nodiscard]] std::vector<double> table(std::size_t n_rows, std::size_t n_columns, double least = 0.0) const {
+    std::vector<double> values;
+    for (const Told& value : items(n_rows * n_columns)) values.push_back(value.number(least, 1.0));
+    for (std::size_t row = 0; row < n_rows; ++row) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * n_columns);
+      if (std::abs(std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(n_columns), 0.0) - 1.0) > 1e-6)
+        refuse("row " + std::to_string(row + 1) + " of probabilities doesn't add up to 1");
     }
-    if (std::abs(sum - 1.0) > 1e-6) throw std::domain_error("probabilities don't add up to 1");
+    return values;
   }
-  return values;
-}
 
-double positive(const Json& json, const char* what) {
-  const double value = json.get<double>();
-  if (!(value > 0.0) || !std::isfinite(value)) throw std::domain_error(std::string(what) + " isn't above 0");
-  return value;
-}
-
-int whole(const Json& json, const char* what, int least, int most) {
-  const double value = json.is_number_integer() ? json.get<double>() : least - 1.0;
-  if (value < least || value > most) {
-    throw std::domain_error(std::string(what) + " isn't a whole number from " + std::to_string(least) + " to " +
-                            std::to_string(most));
-  }
-  return json.get<int>();
-}
+ private:
+  const Json* json_;
+  std::string path_;
+};
 
 /// No reading is impossible, whoever is there: else there may be nobody left to believe in. Products with moves and
 /// beliefs stay far above the least number that there is.
-std::vector<double> emissions(const Json& json, std::size_t n_states, std::size_t n_symbols) {
-  constexpr double least = 1e-100;  // assumed: of training the least is some 1e-9
-  std::vector<double> values = probabilities(json, n_states, n_symbols);
-  if (!std::ranges::all_of(values, [](double value) { return value >= least; }))
-    throw std::domain_error("an emission is below 1e-100: no reading is impossible");
-  return values;
-}
+constexpr double least_emission = 1e-100;  // assumed: of training the least is some 1e-9
 
-std::vector<std::string> names(const Json& json, int n_sensors) {
-  auto names = json.get<std::vector<std::string>>();
-  if (names.size() != size(n_sensors)) throw std::domain_error("sensor_names has another number of names than sensors");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (std::ranges::find(names.begin() + static_cast<std::ptrdiff_t>(i) + 1, names.end(), names[i]) != names.end())
-      throw std::domain_error("sensor_names has '" + names[i] + "' twice");
+std::vector<std::string> names(const Told& told, int n_sensors) {
+  std::vector<std::string> names;
+  for (const Told& one : told.items(size(n_sensors))) {
+    if (std::ranges::find(names, one.text()) != names.end()) one.refuse("'" + one.text() + "' stands here twice");
+    names.push_back(one.text());
   }
   return names;
 }
 
-std::vector<std::optional<double>> holds(const Json& json, int n_sensors) {
+std::vector<std::optional<double>> holds(const Told& told, int n_sensors) {
   std::vector<std::optional<double>> holds;
-  for (const Json& one : json) {
-    if (!one.is_null() && !(one.get<double>() >= 0.0)) throw std::domain_error("holds_s has a value below 0");
-    holds.push_back(one.is_null() ? std::nullopt : std::optional(one.get<double>()));
-  }
-  if (holds.size() != size(n_sensors)) throw std::domain_error("holds_s has another number of values than sensors");
+  for (const Told& one : told.items(size(n_sensors)))
+    holds.push_back(one.is_null() ? std::nullopt : std::optional(one.number(0.0, never_s)));
   return holds;
 }
 
-const Json& member(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key)) throw std::domain_error(std::string(key) + " is missing");
-  return json.at(key);
+Interval interval(const Told& told) {
+  const auto ends = told.items(2);
+  return {ends[0].number(-never_s, never_s), ends[1].number(-never_s, never_s)};
 }
 
-Counter counter_from(const Json& json) {
-  const Json& version = member(json, "pirsim_counter");
+Counter counter_from(const Told& told) {
+  const Told version = told.member("pirsim_counter");
   const bool has_moves_in_common = version == 1;  // and rooms as lively as they are
-  if (!has_moves_in_common && version != format_version)
-    throw std::domain_error("pirsim_counter: this pirsim reads versions 1 and " + std::to_string(format_version));
-  if (const auto model = json.find("model"); model != json.end())
-    throw std::domain_error("it counts by another model than hidden Markov; pirsim.counting of Python counts with it");
-  constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000;
-  Counter counter;
-  counter.settings.step_s = positive(member(json, "step_s"), "step_s");
+  if (!has_moves_in_common && !(version == format_version))
+    version.refuse("this pirsim reads versions 1 and " + std::to_string(format_version));
+  if (told.find("model"))
+    told.refuse("it counts by another model than hidden Markov; pirsim.counting of Python counts with it");
+  constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000, most_rooms = 1'000'000'000;
   constexpr double longest_step_s = 86'400.0;
-  if (counter.settings.step_s > longest_step_s) throw std::domain_error("step_s is longer than a day");
-  counter.settings.modes = whole(member(json, "modes"), "modes", 1, most_modes);
-  counter.n_sensors = whole(member(json, "sensors"), "sensors", 1, most_sensors);
-  counter.n_counts = whole(member(json, "counts"), "counts", 2, most_counts);
+  Counter counter;
+  counter.settings.step_s = told.member("step_s").positive();
+  if (counter.settings.step_s > longest_step_s) told.member("step_s").refuse("longer than a day");
+  counter.settings.modes = told.member("modes").whole(1, most_modes);
+  counter.n_sensors = told.member("sensors").whole(1, most_sensors);
+  counter.n_counts = told.member("counts").whole(2, most_counts);
   const std::size_t n = size(counter.n_states());
   double weights = 0.0;
-  const auto add = [&](RoomModel model, const Json& told) {
-    model.weight = member(told, "weight").get<double>();
-    if (!(model.weight >= 0.0)) throw std::domain_error("a weight is below 0");
+  const auto add = [&](RoomModel model, const Told& of) {
+    model.weight = of.member("weight").number(0.0, 1.0 + 1e-6);
     weights += model.weight;
-    model.emissions = emissions(member(told, "emissions"), n, size(counter.n_symbols()));
+    model.emissions = of.member("emissions").table(n, size(counter.n_symbols()), least_emission);
     counter.rooms.push_back(std::move(model));
   };
-  for (const Json& room : member(json, "rooms")) {
+  for (const Told& room : told.member("rooms").items()) {
     RoomModel model;
-    constexpr int most_rooms = 1'000'000'000;
-    model.number = whole(member(room, "room"), "room", 0, most_rooms);
-    model.first = probabilities(member(room, "first"), 1, n);
-    model.moves = probabilities(member(has_moves_in_common ? json : room, "moves"), n, n);
+    model.number = room.member("room").whole(0, most_rooms);
+    model.first = room.member("first").table(1, n);
+    model.moves = (has_moves_in_common ? told : room).member("moves").table(n, n);
     if (has_moves_in_common) {
       add(std::move(model), room);
       continue;
     }
-    for (const Json& told : member(room, "versions")) {
-      model.liveliness = positive(member(told, "liveliness"), "liveliness");
-      add(model, told);
+    for (const Told& one : room.member("versions").items()) {
+      model.liveliness = one.member("liveliness").positive();
+      add(model, one);
     }
   }
-  if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
-  if (const auto error = json.find("expected_error"); error != json.end())
-    counter.expected_error = Interval{error->at(0).get<double>(), error->at(1).get<double>()};
-  if (const auto told = json.find("figures_off"); told != json.end()) {
+  if (!(std::abs(weights - 1.0) < 1e-6)) told.member("rooms").refuse("the rooms' weights don't add up to 1");
+  if (const auto error = told.find("expected_error")) counter.expected_error = interval(*error);
+  if (const auto figures = told.find("figures_off")) {
     counter.figures_off.emplace();
     for (const auto& [name, off] : figure_names) {
-      const Json& one = member(*told, name);
-      (*counter.figures_off).*off = {one.at(0).get<double>(), one.at(1).get<double>()};
+      const Interval found = interval(figures->member(name));
+      (*counter.figures_off).*off = {found.low, found.high};
     }
   }
-  if (const auto warning = json.find("warning"); warning != json.end()) counter.warning = warning->get<std::string>();
-  if (const auto told = json.find("sensor_names"); told != json.end())
-    counter.sensors = names(*told, counter.n_sensors);
-  if (const auto told = json.find("holds_s"); told != json.end()) counter.holds_s = holds(*told, counter.n_sensors);
+  if (const auto warning = told.find("warning")) counter.warning = warning->text();
+  if (const auto found = told.find("sensor_names")) counter.sensors = names(*found, counter.n_sensors);
+  if (const auto found = told.find("holds_s")) counter.holds_s = holds(*found, counter.n_sensors);
   return counter;
 }
 
@@ -768,8 +793,9 @@ std::string read_counter_bytes(const std::filesystem::path& file) {
 
 Counter parse_counter(std::string_view bytes, const std::string& name) {
   try {
-    return counter_from(Json::parse(bytes));
-  } catch (const nlohmann::json::parse_error&) {
+    const Json json = Json::parse(bytes);
+    return counter_from(Told(json));
+  } catch (const nlohmann::json::exception&) {
     throw Error(ErrorCode::input, Where{name}, "isn't a counter: pirsim calibrate and pirsim.counting write one");
   } catch (const std::exception& fault) {
     throw Error(ErrorCode::input, Where{name}, std::string("isn't a counter as it should be: ") + fault.what());

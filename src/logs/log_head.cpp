@@ -12,8 +12,8 @@
 
 #include "files/disk/file.hpp"
 #include "files/read/csv_reader.hpp"
+#include "files/read/state_words.hpp"
 #include "logs/log_proof.hpp"
-#include "logs/state_words.hpp"
 #include "logs/times.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/limits.hpp"
@@ -22,24 +22,12 @@
 namespace pirsim::io {
 namespace {
 
-std::string small(std::string_view text) {
-  std::string result(trimmed(text));
-  std::ranges::transform(result, result.begin(), lower);
-  return result;
-}
-
 template <typename Words>
 bool is_one_of(const Words& words, std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return word == text; });
 }
 
 constexpr std::size_t longest_state = 24;
-
-std::optional<double> number_of(std::string text) {
-  if (const std::size_t comma = text.find(','); comma != std::string::npos) text[comma] = '.';
-  const auto value = parse_number<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 bool begins_with_one_of(const std::vector<std::string>& words, const auto& beginnings) {
   return std::ranges::any_of(words, [&](const std::string& word) {
@@ -112,11 +100,11 @@ std::optional<std::int32_t> read_state(std::string_view text) {
   if (text == "0" || text == "OFF" || text == "off") return log_state::off;
   if (text == "1" || text == "ON" || text == "on") return log_state::on;
   if (text.size() > longest_state) return std::nullopt;
-  const std::string word = small(text);
+  const std::string word = small_letters(text);
   if (is_one_of(on_words, word)) return log_state::on;
   if (is_one_of(off_words, word)) return log_state::off;
   if (is_one_of(unknown_words, word)) return log_state::unknown;
-  const auto number = number_of(word);
+  const auto number = decimal_number(word);
   if (number == 0.0) return log_state::off;
   if (number == 1.0) return log_state::on;
   return std::nullopt;
@@ -125,16 +113,16 @@ std::optional<std::int32_t> read_state(std::string_view text) {
 bool is_empty_cell(std::string_view text) {
   if (text.empty()) return true;
   if (text.size() > longest_state) return false;
-  const std::string word = small(text);
+  const std::string word = small_letters(text);
   return word.empty() || word == "nan" || word == "null" || word == "<na>";
 }
 
 std::optional<std::int32_t> read_count(std::string_view text) {
   constexpr double most = 1e6;  // assumed: a stadium has fewer
   if (text.size() > longest_state) return std::nullopt;
-  const std::string word = small(text);
+  const std::string word = small_letters(text);
   if (is_one_of(unknown_words, word)) return log_state::unknown_count;
-  if (const auto number = number_of(word);
+  if (const auto number = decimal_number(word);
       number && *number >= 0.0 && *number <= most && *number == std::floor(*number))
     return static_cast<std::int32_t>(*number);
   const auto state = read_state(word);
@@ -173,7 +161,7 @@ NameSays what_name_says(std::string_view name) {
                                   "co2",      "humid", "slope",   "volt",        "batt",  "power",
                                   "pressure", "rssi",  "energy",  "linkquality", "lqi"};
   constexpr std::array devices{"door", "window", "switch", "lock", "hvac", "contact", "tamper"};
-  const std::string word = small(name);
+  const std::string word = small_letters(name);
   if (is_one_of(times, word) || word.ends_with("_ts")) return NameSays::time;
   if (is_one_of(sensors, word)) return NameSays::sensor;
   if (is_one_of(states, word)) return NameSays::state;
@@ -194,7 +182,7 @@ NameSays what_name_says(std::string_view name) {
 int rank_as_time(std::string_view name) {
   constexpr std::array surest{"time", "timestamp", "ts", "last_changed"};
   constexpr std::array late{"received", "created_at", "last_updated"};
-  const std::string word = small(name);
+  const std::string word = small_letters(name);
   if (is_one_of(surest, word)) return 3;
   return what_name_says(name) == NameSays::time && !is_one_of(late, word) && !word.ends_with("_ts") ? 2 : 1;
 }
@@ -213,13 +201,6 @@ bool is_casas_motion(std::string_view name) {
   name.remove_prefix(1);
   if (name.starts_with('A')) name.remove_prefix(1);  // one that sees a whole area
   return !name.empty() && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
-}
-
-char separator_of(const std::string& line) {
-  constexpr std::array separators{',', ';', '\t'};
-  const auto n = [&](char c) { return std::ranges::count(line, c); };
-  const char most = *std::ranges::max_element(separators, {}, n);
-  return n(most) == 0 ? ' ' : most;
 }
 
 bool is_number(const std::string& text) {

@@ -69,7 +69,6 @@ struct HeadTable {
   [[noreturn]] void refuse_with(const std::string& why, const std::vector<std::string>& maps) const;
 };
 
-[[nodiscard]] char separator_of(const std::string& line);
 /// Throws Error(input).
 [[nodiscard]] HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file);
 

@@ -118,11 +118,7 @@ void set_unit(TimeColumns& columns, double typical, std::string_view name) {
   const double size = std::abs(typical);
   const bool is_in_ms = name.ends_with("_ms") || name.find("milli") != std::string_view::npos;
   columns.zero = size < (is_in_ms ? 1e11 : 1e8) ? TimeColumns::Zero::own : TimeColumns::Zero::epoch;
-  if (columns.zero == TimeColumns::Zero::own) {
-    columns.unit_us = is_in_ms ? 1e3 : 1e6;
-  } else {  // 2001 is 1e9 s
-    columns.unit_us = size < 1e11 ? 1e6 : size < 1e14 ? 1e3 : size < 1e17 ? 1.0 : 1e-3;
-  }
+  columns.unit_us = columns.zero == TimeColumns::Zero::epoch ? *epoch_unit_us(typical) : is_in_ms ? 1e3 : 1e6;
 }
 
 LogTimer::LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes the words that pirsim-live knows for states, python/live/custom_components/pirsim/live/words.py, from the table
-that logs are read by, src/logs/state_words.hpp.
+that logs are read by, src/files/read/state_words.hpp.
 
 Usage: write.py [--check]   --check changes nothing, and exits with 1 if the module differs.
 """
@@ -10,9 +10,9 @@ import sys
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TABLE = ROOT / "src/logs/state_words.hpp"
+TABLE = ROOT / "src/files/read/state_words.hpp"
 MODULE = ROOT / "python/live/custom_components/pirsim/live/words.py"
-HEAD = '"""Words for states of motion sensors. Written by tools/words/write.py from src/logs/state_words.hpp."""\n'
+HEAD = '"""Words for states of motion sensors. Written by tools/words/write.py from src/files/read/state_words.hpp."""\n'
 
 
 def module():

@@ -1,6 +1,7 @@
 #include "files/read/csv_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -8,7 +9,6 @@
 #include "files/disk/compression.hpp"
 #include "files/disk/file.hpp"
 #include "model/core/text.hpp"
-#include "model/schema/clock.hpp"
 
 namespace pirsim::io {
 
@@ -51,6 +51,7 @@ class CsvParser {
     table.file_ = file_;
     while (!text_.empty()) {
       if (skip_line_without_data(table.header_.empty())) continue;
+      if (table.header_.empty()) table.separator_ = separator_ = separator_in(text_.substr(0, text_.find('\n')));
       std::vector<CsvTable::Field> record = read_record();
       if (table.header_.empty()) {
         table.header_ = std::move(record);
@@ -101,7 +102,7 @@ class CsvParser {
       if (record.size() == max_fields) refuse(line_, column_, "more than " + std::to_string(max_fields) + " fields");
       record.push_back(read_field());
       if (at_line_end()) break;
-      advance();  // the comma
+      advance();  // the separator
     }
     end_line();
     return record;
@@ -111,7 +112,7 @@ class CsvParser {
     if (text_.starts_with('"')) {
       read_quoted(field);
     } else {
-      while (!at_line_end() && text_.front() != ',') {
+      while (!at_line_end() && text_.front() != separator_) {
         if (text_.front() == '"') refuse(line_, column_, "a quote inside a field that doesn't begin with one");
         field.text += text_.front();
         advance();
@@ -136,15 +137,11 @@ class CsvParser {
       advance();
     }
     advance();
-    if (!at_line_end() && text_.front() != ',') refuse(line_, column_, "expected a comma after the closing quote");
+    if (at_line_end() || text_.front() == separator_) return;
+    refuse(line_, column_, std::string("expected '") + separator_ + "' after the closing quote");
   }
 
   void check_header(const CsvTable& table) {
-    if (table.header_.size() == 1) {
-      const CsvTable::Field& only = table.header_.front();
-      if (only.text.find(';') != std::string::npos || only.text.find('\t') != std::string::npos)
-        refuse(only.line, only.column, "columns must be separated by commas, not by semicolons or tabs");
-    }
     std::set<std::string> names;
     for (const CsvTable::Field& field : table.header_) {
       if (names.insert(field.text).second) continue;
@@ -159,8 +156,15 @@ class CsvParser {
 
   static constexpr std::size_t max_fields = 10'000;  // assumed: a column a sensor makes some tens
 
+  /// A table of one column has none.
+  static char separator_in(std::string_view header) {
+    const char found = separator_of(std::string(header));
+    return found == ' ' ? ',' : found;
+  }
+
   std::string_view text_;
   std::string file_;
+  char separator_ = ',';
   int line_ = 1;
   int column_ = 1;
   Diagnostics faults_;
@@ -210,7 +214,9 @@ std::optional<int> CsvTable::integer(std::size_t row, std::size_t column, Diagno
 }
 std::optional<double> CsvTable::number(std::size_t row, std::size_t column, Diagnostics& faults) const {
   if (text(row, column).empty()) return std::nullopt;
-  const std::optional<double> value = parse_number<double>(text(row, column));
+  // Between commas, "1,234" may be a thousand.
+  const std::optional<double> value =
+      separator_ == ',' ? parse_number<double>(text(row, column)) : decimal_number(text(row, column));
   if (value && std::isfinite(*value)) return value;
   faults.error(where(row, column), header_[column].text + ": expected a number, got '" + text(row, column) + "'");
   return std::nullopt;
@@ -273,41 +279,69 @@ TimeColumn::TimeColumn(const CsvTable& table, const std::string& wanted, Diagnos
   if (!wanted.empty()) {
     column_ = table.required_column(wanted, faults);
   } else {
-    const bool has_rows = table.n_rows() > 0;
-    for (const char* name : {"time", "time_s", "t"}) {
-      const auto column = column_ ? std::nullopt : table.column(name);
-      if (column && !(has_rows && table.text(0, *column).empty())) column_ = column;
-    }
-    if (table.column("t") && table.column("time_s"))
-      faults.error(table.header_place(), "columns 't' and 'time_s' mean the same: give one of them");
-    const auto date = table.column("Date"), time = table.column("Time");
-    if (!column_ && date && time) column_ = time, date_ = date;
-    if (!column_) {
-      std::string names;
-      for (const std::string& name : table.names()) names += (names.empty() ? "" : ", ") + name;
-      faults.error(table.header_place(), "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are " +
-                                             names + ": say `time: COLUMN` in the script");
-    }
+    find(faults);
   }
-  if (column_ && table.n_rows() > 0) is_clock_ = clock_from(text(0)).has_value();
+  if (!column_ || table.n_rows() == 0) return;
+  order_ = order_in(faults);
+  const auto first = parse_stamp(text(0), order_);
+  if (!first) return;
+  kind_ = first->kind == Stamp::Kind::date ? Stamp::Kind::local : first->kind;
+  offset_s_ = first->offset_s;
+  if (kind_ == Stamp::Kind::number) epoch_unit_us_ = epoch_unit_us(first->number);
+}
+
+void TimeColumn::find(Diagnostics& faults) {
+  const bool has_rows = table_.n_rows() > 0;
+  for (const char* name : {"time", "time_s", "t"}) {
+    const auto column = column_ ? std::nullopt : table_.column(name);
+    if (column && !(has_rows && table_.text(0, *column).empty())) column_ = column;
+  }
+  if (table_.column("t") && table_.column("time_s"))
+    faults.error(table_.header_place(), "columns 't' and 'time_s' mean the same: give one of them");
+  const auto date = table_.column("Date"), time = table_.column("Time");
+  if (!column_ && date && time) column_ = time, date_ = date;
+  if (column_) return;
+  std::vector<std::size_t> moments;
+  for (std::size_t i = 0; has_rows && i < table_.names().size(); ++i) {
+    const auto stamp = parse_stamp(table_.text(0, i), Dates::found);
+    if (stamp && (stamp->kind == Stamp::Kind::local || stamp->kind == Stamp::Kind::absolute)) moments.push_back(i);
+  }
+  if (moments.size() == 1) {
+    column_ = moments.front();
+  } else {
+    faults.error(table_.header_place(), "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are " +
+                                            joined(table_.names(), ", ") + ": say `time: COLUMN` in the script");
+  }
+}
+
+Dates TimeColumn::order_in(Diagnostics& faults) const {
+  bool is_open = false;
+  for (std::size_t row = 0; row < table_.n_rows(); ++row) {
+    const auto order = order_of_date(text(row));
+    if (!order) continue;
+    if (order->order != Dates::found) return order->order;
+    is_open = true;
+  }
+  if (is_open)
+    faults.error(where(0), "'" + text(0) + "' can be two dates, and no other row decides: write it as 2026-03-02");
+  return Dates::found;
 }
 
 std::string TimeColumn::text(std::size_t row) const {
-  return (date_ ? table_.text(row, *date_) + 'T' : std::string()) + table_.text(row, *column_);
+  return (date_ ? table_.text(row, *date_) + ' ' : std::string()) + table_.text(row, *column_);
 }
 
 std::optional<double> TimeColumn::seconds(std::size_t row, Diagnostics& faults) const {
-  if (is_clock_) {
-    if (const auto moment = clock_from(text(row))) return static_cast<double>(moment->begin_s);
-    faults.error(where(row), "expected a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
-    return std::nullopt;
-  }
   constexpr double farthest_s = 1e10;  // 300 years
-  Diagnostics found;
-  const auto number = date_ ? std::nullopt : table_.number(row, *column_, found);
-  if (number && std::abs(*number) <= farthest_s) return number;
-  faults.error(where(row),
-               "expected seconds, or a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
+  const auto stamp = parse_stamp(text(row), order_);
+  if (stamp && kind_ == Stamp::Kind::number && stamp->kind == kind_) {
+    const double seconds = epoch_unit_us_ ? stamp->number * *epoch_unit_us_ / us_per_s : stamp->number;
+    if (std::abs(seconds) <= farthest_s) return seconds;
+  } else if (stamp && (stamp->kind == kind_ || (stamp->kind == Stamp::Kind::date && kind_ == Stamp::Kind::local))) {
+    return static_cast<double>(stamp->us) / us_per_s + offset_s_;
+  }
+  faults.error(where(row), std::string("expected ") + (is_clock() ? "" : "seconds, or ") +
+                               "a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
   return std::nullopt;
 }
 
@@ -343,6 +377,13 @@ bool take_quoted(std::string_view& line, std::string& text) {
 }
 
 }  // namespace
+
+char separator_of(const std::string& line) {
+  constexpr std::array separators{',', ';', '\t'};
+  const auto n = [&](char c) { return std::ranges::count(line, c); };
+  const char most = *std::ranges::max_element(separators, {}, n);
+  return n(most) == 0 ? ' ' : most;
+}
 
 bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
                   std::vector<std::string>& unquoted) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "files/read/stamps.hpp"
+#include "pirsim/dates.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim {
@@ -47,9 +49,9 @@ class RepeatedFaults {
   std::vector<Kind> kinds_;
 };
 
-/// A header and rows of as many fields. Quoted fields, doubled quotes, line ends inside quotes, CRLF and a byte order
-/// mark are understood, and UTF-16 with its mark; empty lines are skipped, and comments before the header: lines that
-/// begin with '#'.
+/// A header and rows of as many fields, separated by commas, semicolons or tabs. Quoted fields, doubled quotes, line
+/// ends inside quotes, CRLF and a byte order mark are understood, and UTF-16 with its mark; empty lines are skipped,
+/// and comments before the header: lines that begin with '#'.
 class CsvTable {
  public:
   /// The file may be compressed by gzip or Zstandard. Throws Error: io (no file), input (content).
@@ -78,6 +80,7 @@ class CsvTable {
   };
   friend class CsvParser;
   std::string file_;
+  char separator_ = ',';
   std::vector<Field> header_;
   std::vector<std::vector<Field>> rows_;
 };
@@ -90,26 +93,37 @@ class CsvTable {
 class TimeColumn {
  public:
   /// wanted: the column's name, or "": `time`, `time_s`, `t`, or `Date` and `Time`, the first of these that the table
-  /// has and fills. The table outlives this. A missing one is told.
+  /// has and fills, or else its only column of moments. The table outlives this. A missing one is told.
   TimeColumn(const CsvTable& table, const std::string& wanted, Diagnostics& faults);
 
   [[nodiscard]] bool is_found() const noexcept { return column_.has_value(); }
-  /// Are they local times, whose seconds count since 1970-01-01T00:00? Otherwise they are plain seconds.
-  [[nodiscard]] bool is_clock() const noexcept { return is_clock_; }
+  /// Are they moments, whose seconds count since 1970-01-01T00:00 of a clock on the wall: the one that the first row
+  /// tells, of a number since 1970 UTC? Otherwise they are plain seconds.
+  [[nodiscard]] bool is_clock() const noexcept {
+    return kind_ == Stamp::Kind::local || kind_ == Stamp::Kind::absolute || epoch_unit_us_.has_value();
+  }
   /// Where a row's fault stands.
   [[nodiscard]] Where where(std::size_t row) const { return table_.where(row, *column_); }
   /// None after a fault, which is told.
   [[nodiscard]] std::optional<double> seconds(std::size_t row, Diagnostics& faults) const;
 
  private:
+  void find(Diagnostics& faults);
+  [[nodiscard]] Dates order_in(Diagnostics& faults) const;
   [[nodiscard]] std::string text(std::size_t row) const;
 
   const CsvTable& table_;
   std::optional<std::size_t> column_, date_;
-  bool is_clock_ = false;
+  Dates order_ = Dates::found;
+  Stamp::Kind kind_ = Stamp::Kind::number;
+  std::int32_t offset_s_ = 0;
+  std::optional<double> epoch_unit_us_;  ///< of numbers that count since 1970
 };
 
 // The fields of one line of a table. Private to io.
+
+/// What separates the fields of a header: the most frequent of comma, semicolon and tab; a space if there is none.
+[[nodiscard]] char separator_of(const std::string& line);
 
 /// The fields of a line. '"' quotes, doubled within quotes; ' ' separates at every run of spaces and tabs. They live as
 /// long as the line and `unquoted`. False if a quote isn't closed.

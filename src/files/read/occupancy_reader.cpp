@@ -16,6 +16,8 @@
 #include "files/disk/file.hpp"
 #include "files/read/csv_reader.hpp"
 #include "files/read/reader_parts.hpp"
+#include "files/read/stamps.hpp"
+#include "files/read/state_words.hpp"
 #include "files/read/yaml.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/clock.hpp"
@@ -32,14 +34,15 @@ namespace {
 
 /// A study's rows have many runs, and then time begins anew.
 void require_one_run(const CsvTable& table, const TimeColumn& time, RepeatedFaults& faults) {
-  for (const std::string_view name :
-       {std::string_view("replicate"), std::string_view("trial"), room_column.name, day_column.name}) {
+  for (const std::string_view name : {std::string_view("replicate"), std::string_view("trial"), room_column.name,
+                                      day_column.name, std::string_view("entity_id")}) {
     const auto column = table.column(name);
     if (!column || (name == day_column.name && time.is_clock())) continue;  // a clock goes on from day to day
     for (std::size_t row = 1; row < table.n_rows(); ++row) {
       if (table.text(row, *column) == table.text(0, *column)) continue;
       faults.add("runs", table.where(row, *column),
-                 "rows of more than one run: keep those of one " + std::string(name));
+                 (name == "entity_id" ? "rows of more than one entity" : "rows of more than one run") +
+                     (": keep those of one " + std::string(name)));
       return;
     }
   }
@@ -96,7 +99,7 @@ std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const Perso
 template <typename Shift>
 std::string begin_of(const TimeColumn& time, double first_s, const Shift& shift) {
   if (!time.is_clock()) return {};
-  const RunClock begin{std::llround(first_s)};
+  const RunClock begin{static_cast<std::int64_t>(std::floor(first_s))};
   shift(-static_cast<double>(begin.begin_s));
   return begin.text(0.0);
 }
@@ -138,7 +141,7 @@ class CountsReader {
  private:
   std::optional<std::size_t> find_people() const {
     if (!counts_.column.empty()) return table_.required_column(counts_.column, faults_);
-    for (const char* name : {"people", "count", "occupancy", "Room_Occupancy_Count"}) {
+    for (const char* name : {"people", "count", "occupancy", "Room_Occupancy_Count", "state"}) {
       if (const auto column = table_.column(name)) return column;
     }
     if (!counts_.areas.empty()) return std::nullopt;  // all are in areas
@@ -150,6 +153,8 @@ class CountsReader {
 
   /// None where it isn't known.
   std::optional<int> people_in(std::size_t row, std::size_t column, Diagnostics& faults) const {
+    if (std::ranges::find(unknown_words, small_letters(table_.text(row, column))) != unknown_words.end())
+      return std::nullopt;
     const auto number = table_.number(row, column, faults);
     if (!number) return std::nullopt;
     const auto most = static_cast<double>(accepted::people_of_counts.max);

@@ -186,13 +186,8 @@ Offset offset(Scanner& scan) {
 }
 
 std::optional<Stamp> as_number(std::string_view text) {
-  std::optional<double> value = parse_number<double>(text);
-  if (!value) {  // a decimal comma
-    std::string with_point(text);
-    if (const std::size_t comma = with_point.find(','); comma != std::string::npos) with_point[comma] = '.';
-    value = parse_number<double>(with_point);
-  }
-  if (!value || !std::isfinite(*value)) return std::nullopt;
+  const auto value = decimal_number(text);
+  if (!value) return std::nullopt;
   Stamp stamp;
   stamp.number = *value;
   return stamp;
@@ -212,6 +207,25 @@ std::string_view trimmed(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
   return text;
+}
+
+std::string small_letters(std::string_view text) {
+  std::string result(trimmed(text));
+  std::ranges::transform(result, result.begin(), lower);
+  return result;
+}
+
+std::optional<double> decimal_number(std::string_view text) {
+  std::string with_point(text);
+  if (const std::size_t comma = with_point.find(','); comma != std::string::npos) with_point[comma] = '.';
+  const auto value = parse_number<double>(with_point);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<double> epoch_unit_us(double number) {
+  const double size = std::abs(number);
+  if (size < 1e8) return std::nullopt;
+  return size < 1e11 ? 1e6 : size < 1e14 ? 1e3 : size < 1e17 ? 1.0 : 1e-3;  // 2001 is 1e9 s
 }
 
 std::optional<Stamp> parse_stamp(std::string_view text, Dates order) {

@@ -21,6 +21,14 @@ inline constexpr std::int64_t us_per_ms = 1'000, us_per_s = 1'000'000, us_per_da
 /// Without the spaces around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
+/// In small letters, without the spaces around it.
+[[nodiscard]] std::string small_letters(std::string_view text);
+/// A finite number, also with a decimal comma; none of any other text.
+[[nodiscard]] std::optional<double> decimal_number(std::string_view text);
+/// Microseconds of the unit in which a number of this size counts from 1970: seconds, milli-, micro- or nanoseconds.
+/// None of one that is too small to count from there.
+[[nodiscard]] std::optional<double> epoch_unit_us(double number);
+
 struct Stamp {
   enum class Kind {
     number,       ///< of seconds or parts of them, since something
@@ -46,7 +54,7 @@ struct Stamp {
 struct DateOrder {
   Dates order = Dates::found;      ///< found: it leaves that open
   Dates year_last = Dates::found;  ///< the same, if the year is known to be last
-  int first = 0, last = 0;                         ///< its numbers
+  int first = 0, last = 0;         ///< its numbers
 };
 [[nodiscard]] std::optional<DateOrder> order_of_date(std::string_view text);
 

@@ -95,6 +95,48 @@ TEST_CASE("Counts of areas are columns of the same file") {
                     "counts: c.csv, areas: {}");
 }
 
+TEST_CASE("Counts read what logs read") {
+  // 1772434800 is 2026-03-02T07:00 UTC.
+  for (const char* text : {
+           "time,people\n2026-03-02T07:00,0\n2026-03-02T07:10,1\n2026-03-02T07:20,4\n",
+           "time;people\n2026-03-02 07:00:00;0\n2026-03-02 07:10:00;1\n2026-03-02 07:20:00;4\n",
+           "time\tpeople\n2026-03-02T07:00Z\t0\n2026-03-02T07:10Z\t1\n2026-03-02T07:20Z\t4\n",
+           "time,people\n2026-03-02T07:00+02:00,0\n2026-03-02T07:10+02:00,1\n2026-03-02T06:20+01:00,4\n",
+           "time,people\n1772434800,0\n1772435400,1\n1772436000,4\n",
+           "time,people\n1772434800000,0\n1772435400000,1\n1772436000000,4\n",
+           "time;people\n02.03.2026 07:00;0,0\n02.03.2026 07:10;1,0\n02.03.2026 07:20;4,0\n",
+           "zeit,people\n2026-03-02 07:00,0\n2026-03-02 07:10,1\n2026-03-02 07:15,unavailable\n2026-03-02 07:20,4\n",
+           "entity_id,state,last_changed\nsensor.n,0,2026-03-02T07:00:00.000Z\nsensor.n,1,2026-03-02T07:10:00.000Z\n"
+           "sensor.n,4,2026-03-02T07:20:00.000Z\n",
+           "Date,Time,people\n03/02/2026,7:00 AM,0\n03/02/2026,7:10 AM,1\n03/02/2026,7:20 AM,4\n03/13/2026,7:20 AM,\n",
+       }) {
+    CAPTURE(text);
+    const CountsSpec counts = *occupancy_of(text).counts;
+    CHECK(counts.begin == "2026-03-02T07:00:00");
+    CHECK(counts.times_s == std::vector{0.0, 600.0, 1200.0});
+    CHECK(counts.people == std::vector{0, 1, 4});
+  }
+  refused_occupancy("time,people\n03/02/2026 07:00,0\n03/02/2026 07:10,1\n",
+                    "c.csv:2:1: error: '03/02/2026 07:00' can be two dates");
+  refused_occupancy("a,b,people\n2026-03-02 07:00,2026-03-02 07:00,0\n", "say `time: COLUMN` in the script");
+  refused_occupancy("entity_id,state,last_changed\nsensor.n,0,2026-03-02T07:00Z\nsensor.m,1,2026-03-02T07:10Z\n",
+                    "c.csv:3:1: error: rows of more than one entity: keep those of one entity_id");
+}
+
+TEST_CASE("Places and positions read what logs read") {
+  for (const char* text : {"time_s,id,x,z\n10,a,1.5,-1\n11,a,1.5,-1\n", "time_s;id;x;z\n10;a;1,5;-1\n11;a;1,5;-1\n"}) {
+    CAPTURE(text);
+    const PositionsSpec positions = *occupancy_of(text, "positions: c.csv").positions;
+    REQUIRE(positions.tracks.size() == 1);
+    CHECK(positions.tracks[0].times_s == std::vector{10.0, 11.0});
+    CHECK(positions.tracks[0].points[0].x == 1.5);
+  }
+  const std::string semicolons = "time;id;x;z\n02.03.2026 07:00:00;a;1,5;-1\n02.03.2026 07:00:01;a;1,5;-1\n";
+  CHECK(occupancy_of(semicolons, "positions: c.csv").positions->begin == "2026-03-02T07:00:00");
+  const std::string diary = "time;person;seat\n1772434800;a;S1\n1772434801;a;S1\n";
+  CHECK(occupancy_of(diary, "places: c.csv").places->begin == "2026-03-02T07:00:00");
+}
+
 TEST_CASE("What is wrong with counts is told with its line and column") {
   refused_occupancy("time,people\n2026-03-02T07:00,0\n2026-03-02T07:01,-1\n",
                     "c.csv:3:18: error: expected a number of people");

@@ -1,10 +1,14 @@
 // Hidden Markov counters against sums over all paths, and against a room that is made of a known one.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
+#include "files/disk/file.hpp"
 #include "logs/counter.hpp"
 #include "pirsim/counting.hpp"
 #include "pirsim/error.hpp"
@@ -565,6 +569,41 @@ TEST_CASE("A counter is written and read back as it is, and what isn't one is re
   spoilt = counter;
   spoilt.holds_s = {-1.0, 2.0};
   refused(spoilt);
+}
+
+TEST_CASE("A value of a counter that can't be is refused by its place in the file, whichever it is") {
+  std::mt19937 random(7);
+  const TemporaryFolder folder;
+  Counter counter = random_counter(random, 2);
+  counter.expected_error = Interval{0.25, 0.75};
+  counter.sensors = {"hall", "desk"};
+  counter.holds_s = {12.5, 30.0};
+  counter.figures_off.emplace();
+  write_counter(folder.path() / "counter.json", counter);
+  using Json = nlohmann::ordered_json;
+  const Json written = Json::parse(io::read_text_file(folder.path() / "counter.json"));
+  std::size_t n_texts = 0;
+  const Json flat = written.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    std::string place = pointer.substr(1);  // "rooms/0/first/1" is rooms[0].first[1]
+    for (std::size_t at = place.find('/'); at != std::string::npos; at = place.find('/', at)) {
+      const std::size_t end = std::min(place.find('/', at + 1), place.size());
+      const std::string part = place.substr(at + 1, end - at - 1);
+      place.replace(at, end - at,
+                    std::isdigit(static_cast<unsigned char>(part[0])) != 0 ? '[' + part + ']' : '.' + part);
+    }
+    n_texts += value.is_string() ? 1 : 0;
+    for (const Json& wrong : {Json("x"), Json(nullptr), Json::array(), Json::object(), Json(-1e300), Json(true)}) {
+      const bool may_be =
+          (value.is_string() && wrong.is_string()) || (place.starts_with("holds_s") && wrong.is_null()) ||
+          ((place.starts_with("expected_error") || place.starts_with("figures_off")) && wrong.is_number());
+      if (may_be) continue;
+      Json spoilt = written;
+      spoilt[Json::json_pointer(pointer)] = wrong;
+      CHECK_THROWS_WITH(parse_counter(spoilt.dump(), "c.json"), contains(place + ": "));
+    }
+  }
+  CHECK(n_texts == 2);  // the sensors' names
 }
 
 TEST_CASE("How far off figures are is written and read back, and a counter without tells none") {

@@ -1,4 +1,4 @@
-"""Words for states of motion sensors. Written by tools/words/write.py from src/logs/state_words.hpp."""
+"""Words for states of motion sensors. Written by tools/words/write.py from src/files/read/state_words.hpp."""
 
 ON = frozenset({"on", "true", "yes", "motion", "motion detected", "motion_detected", "det", "detected", "active",
     "occupied", "moving"})
