@@ -70,11 +70,9 @@ bool is_table(const fs::path& file) {
 /// Of a dataset: those below `rows`.
 std::vector<fs::path> tables_in(const fs::path& folder) {
   std::vector<fs::path> files;
-  const fs::path rows = folder / "rows";
-  if (fs::is_directory(rows)) {
-    for (const auto& entry : fs::recursive_directory_iterator(rows)) {
-      if (entry.is_regular_file() && is_table(entry.path())) files.push_back(entry.path());
-    }
+  std::error_code none;  // of a link that leads nowhere, a folder that may not be read
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "rows", none)) {
+    if (entry.is_regular_file(none) && is_table(entry.path())) files.push_back(entry.path());
   }
   if (files.empty())
     throw Error(ErrorCode::input, {folder.string()}, "no dataset: there are no tables in its folder `rows`");
@@ -102,8 +100,9 @@ std::string date_of_begin(const Sample& row, double window_s) {
 }  // namespace
 
 RowFiles::RowFiles(std::span<const fs::path> paths) {
+  std::error_code unknown;  // of pipes nothing is known
   for (const fs::path& path : paths) {
-    if (!fs::is_directory(path)) {
+    if (!fs::is_directory(path, unknown)) {
       files_.push_back(path);
       continue;
     }
@@ -111,9 +110,8 @@ RowFiles::RowFiles(std::span<const fs::path> paths) {
     files_.insert(files_.end(), tables.begin(), tables.end());
   }
   for (auto file = files_.begin(); file != files_.end(); ++file) {
-    std::error_code unknown;  // of pipes nothing is known
     const auto is_it = [&](const fs::path& other) {
-      return fs::is_regular_file(other) && fs::equivalent(*file, other, unknown);
+      return fs::is_regular_file(other, unknown) && fs::equivalent(*file, other, unknown);
     };
     if (std::find_if(files_.begin(), file, is_it) != file)
       throw Error(ErrorCode::usage, "'" + file->string() + "' is given twice");

@@ -111,6 +111,24 @@ class Declared(Case):
                 self.assertIn(where, CONTENTS)
 
 
+class Values(Case):
+    NUMBERS = {"N", "M", "DEG", "P", "M2", "X", "SECOND", "SECONDS", "TIMES", "MINUTES..."}
+
+    def test_no_option_takes_an_empty_text_or_what_is_no_number_for_its_value(self):
+        tried = 0
+        for command in commands():
+            for option in options(command):
+                if (not option.takes and not option.is_positional) or option.command == "help":
+                    continue
+                rest = needed(command, *([option] if option.is_file or option.is_positional else []))
+                for value in ("", *(("nan", "inf", "9" * 400) if option.takes in self.NUMBERS else ())):
+                    done = pirsim(*command, *ordered([(option, value)], rest))
+                    self.assertEqual(done.returncode, 2, (command, option.name, value, done.stderr))
+                    self.assertRegex(done.stderr, r"^error: (the input|-\w|%s)" % re.escape(option.name), (command, value))
+                    tried += 1
+        self.assertGreater(tried, 400)
+
+
 class OutputsCase(Case):
     def refused(self, *args, code=2, told="one file|one folder|one of the files of|is read as an input"):
         before = self.contents()

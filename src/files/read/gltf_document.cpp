@@ -248,7 +248,7 @@ std::string reason_to_refuse(const std::string& name, const fs::path& folder) {
   if (fault) return "can't be found";
   const auto [in_root, in_target] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
   if (in_root != root.end()) return "is a link that leads out of the scene's folder";
-  if (!fs::is_regular_file(target)) return "is not a regular file";
+  if (!fs::is_regular_file(target, fault)) return "is not a regular file";
   return {};
 }
 

@@ -692,7 +692,8 @@ Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene
                        const LogMap& map) {
   require_known_presence(script);
   // A pipe can't be looked into before it is read: a map says that it is a log.
-  const bool is_piped_log = map != LogMap{} && !std::filesystem::is_regular_file(file);
+  std::error_code none;
+  const bool is_piped_log = map != LogMap{} && !std::filesystem::is_regular_file(file, none);
   if (is_piped_log || is_log(file)) return measured_of(io::read_log(std::span(&file, 1), map), scene, script);
   if (map != LogMap{})
     throw Error(ErrorCode::usage, file.string() + " is no log (docs/formats/log.md), so that a map says nothing of it");
