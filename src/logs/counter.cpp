@@ -94,7 +94,7 @@ std::vector<double> first_emissions(const Counter& counter, std::span<const Labe
 }
 
 std::vector<double> first_moves(const Counter& counter, std::span<const LabelledRoom> rooms) {
-  constexpr double stays = 0.9;  // in its mode; assumed
+  constexpr double stays = 0.9;  // in its mode; assumed: training finds the same from 0.6
   const std::size_t modes = size(counter.settings.modes), n = size(counter.n_states());
   const std::vector<double> by_count = moves_by_count(counter, rooms);
   std::vector<double> moves(n * n);
