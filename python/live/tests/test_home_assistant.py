@@ -233,3 +233,39 @@ async def test_a_saved_state_that_is_none_is_begun_anew(state, hass, counter, fr
     assert not state or "begins anew" in caplog.text
     await wait(hass, freezer, 300)
     assert told(hass)[0] == "0" and told(hass)[2] == "off"
+
+
+@pytest.mark.parametrize("seed", range(3))
+async def test_states_clocks_and_restarts_at_random(seed, hass, counter, freezer, tmp_path):
+    (tmp_path / "counter.json").write_text(json.dumps(doubting_counter([HALL, "desk"])))
+    draw = random.Random(seed)
+    entry = await entry_of(hass, freezer)
+    n_on = 0
+    for _ in range(250):
+        before, happens, sensor = told(hass)[2], draw.random(), draw.choice((HALL, DESK))
+        live = entry.runtime_data.live
+        may_turn_on = any(live.counter._states.values()) or bool(live.counter._moved)
+        if happens < 0.2:
+            hass.states.async_set(sensor, "on")
+            may_turn_on = True
+        elif happens < 0.45:
+            hass.states.async_set(sensor, draw.choice(("off", STATE_UNKNOWN, STATE_UNAVAILABLE, "On", "1", "", "x" * 255)))
+        elif happens < 0.5:
+            hass.states.async_remove(sensor)
+        elif happens < 0.85:
+            for _ in range(draw.randrange(1, 20)):
+                freezer.tick(timedelta(seconds=draw.choice((1, 30, 100, 290))))
+                entry.runtime_data._tick(None)
+        elif happens < 0.92:
+            clock_steps(entry, freezer, draw.choice((-1, 1)) * 10 ** draw.uniform(-1, 6))
+            entry.runtime_data._tick(None)
+        else:
+            await away(hass, entry, freezer, draw.choice((-1, 1, 1, 1)) * 10 ** draw.uniform(-1, 5))
+            now = [hass.states.get(one) for one in (HALL, DESK)]
+            may_turn_on = may_turn_on or any(one is not None and one.state == "on" for one in now)
+        await hass.async_block_till_done()
+        assert told(hass)[2] != "on" or before == "on" or may_turn_on, (seed, happens)
+        n_on += told(hass)[2] == "on" != before
+        if entry.runtime_data.live.counter.last is not None and told(hass)[1] not in (STATE_UNKNOWN, STATE_UNAVAILABLE):
+            assert 0 <= float(told(hass)[1]) <= 100
+    assert n_on > 5

@@ -1,6 +1,8 @@
 """The bridge with a real broker: what it hears is what pirsim counts, through all that happens to messages."""
 
+import csv
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -60,15 +62,33 @@ def test_sensors_that_say_nothing_or_no_word_of_motion_are_told(made, caplog):  
     assert "nothing was heard of sensor_2:" in caplog.text
 
 
-@pytest.mark.parametrize("state, texts", [
-    (True, "1 1.0 1,0 +1 01 1e0 1. .1e1 \tON\n Motion"), (False, "0 0.0 0,00 -0 00 0e5 .0 OFF No"),
-    (None, "2 -1 0.5 1_0 0x1 1e400 ١ 1,0,0 1.0.0 1e - inf nan " + 25 * "0" + " on. \u212aon")])
-def test_words_and_numbers_are_read_as_in_logs(state, texts):
-    for text in texts.split(" "):
-        assert state_of(text.encode()) is state, text
+TEXTS = {True: "1 1.0 1,0 +1 01 1e0 1. .1e1 ON Motion", False: "0 0.0 0,00 -0 00 0e5 .0 OFF No",
+         None: "2 -1 0.5 1_0 0x1 1e400 \u0661 1,0,0 1.0.0 1e inf nan ++1 on. \u212aon " + 25 * "0"}
+
+
+@pytest.mark.parametrize("state", TEXTS)
+def test_words_and_numbers_are_states(state):
+    for text in TEXTS[state].split():
+        assert state_of(text.encode()) is state_of(f"\t{text}\n".encode()) is state, text
         assert state_of(json.dumps({"motion": text}).encode()) is state, text
     for word in {True: words.ON, False: words.OFF, None: words.UNKNOWN}[state]:
         assert state_of(word.encode()) is state_of(word.upper().encode()) is state, word
+
+
+@pytest.mark.skipif("PIRSIM" not in os.environ, reason="PIRSIM names the command")
+def test_words_and_numbers_are_read_as_the_command_reads_logs(tmp_path):
+    """A log of a sensor a text: it goes on and off, then says the text at the begin of a window."""
+    known = [word for table in (words.ON, words.OFF, words.UNKNOWN) for word in table if word]
+    texts = [text for texts in TEXTS.values() for text in texts.split()] + known
+    rows = [(60 * i + k / 10, f"pir_{k}", "on" if i % 2 else "off") for k in range(len(texts)) for i in range(100)]
+    rows += [(6000, f"pir_{k}", text) for k, text in enumerate(texts)] + [(6090, "pir_0", "off")]
+    (tmp_path / "log.csv").write_text("time_s;sensor;state\n" + "".join(f"{at};{sensor};{text}\n" for at, sensor, text in sorted(rows)))
+    subprocess.run([os.environ["PIRSIM"], "log", tmp_path / "log.csv", "--step", "30", "-o", tmp_path / "rows.csv"], check=True,
+                   capture_output=True)
+    with open(tmp_path / "rows.csv") as file:
+        [row] = [row for row in csv.DictReader(file) if float(row["time_s"]) == 6030]
+    told = {text: {"1": True, "0": False, "": None}[row[f"pir_{k}"]] for k, text in enumerate(texts)}
+    assert told == {text: state_of(text.encode()) for text in texts}
 
 
 @pytest.mark.parametrize("key, message, state", [
@@ -241,6 +261,9 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
             wanted += 1
             house.until(lambda: house.heard >= wanted)
             known.append((at, sensor, None))  # an empty message says nothing
+        elif happens < 0.08:  # what no sensor says
+            house.say(sensor, draw.choice([b"[" * 100_000, b"\xff\x00", b"9" * 5000, '{"occupancy": NaN}']))
+            known.append((at, sensor, None))
         else:
             house.say(sensor, draw.choice(["ON", '{"occupancy": true}'] if state else ["OFF", '{"occupancy": false}']),
                       times=2 if draw.random() < 0.1 else 1)

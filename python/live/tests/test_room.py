@@ -193,6 +193,28 @@ def test_a_step_of_the_clock_costs_nothing_and_begins_anew(seconds, monkeypatch,
     assert office.occupancy == "OFF" and office.said[-1][1]["people"] == 0
 
 
+def test_a_clock_that_creeps_back_does_not_keep_occupancy_on():
+    office = Office(quick_counter())
+    office.quiet()
+    office.hear(b"ON")
+    office.hear(b"OFF")
+    for _ in range(20):
+        office.wait(15)
+        step(office, -20)  # each less than a reading
+    assert office.occupancy is None
+
+
+@pytest.mark.parametrize("seconds, occupancy", [(299, True), (301, None), (21_599, None)])
+def test_occupancy_is_restored_for_five_minutes(seconds, occupancy):
+    now = [T0]
+    room = LiveRoom(Counter(quick_counter() | {"step_s": 3600.0}), clock=lambda: now[0], monotonic=lambda: now[0])
+    room.update({"hall": True})
+    now[0] += seconds
+    again = LiveRoom(Counter(quick_counter() | {"step_s": 3600.0}), clock=lambda: now[0], monotonic=lambda: now[0])
+    again.restore(room.state())
+    assert again.occupancy.is_on is occupancy
+
+
 def test_a_process_that_slept_has_not_seen_silence(monkeypatch):
     office = Office(quick_counter())
     office.quiet()

@@ -48,7 +48,7 @@ def _check(options: argparse.Namespace) -> None:
     faults = [
         (not re.fullmatch("[A-Za-z0-9_-]+", options.name), "--name: letters, digits, - and _ alone: Home Assistant asks for that"),
         (options.port is not None and not 0 < options.port < 65536, "--port: from 1 to 65535"),
-        (options.password_file is not None and options.user is None, "--password-file: of which --user?"),
+        (options.password_file is not None and options.user is None, "--password-file needs --user"),
         (options.ca is not None and not options.tls, "--ca goes with --tls"),
         (options.ca is not None and not os.path.isfile(options.ca), f"--ca: there is no file {options.ca!r}"),
         (options.state is not None and not os.path.isdir(os.path.dirname(os.path.abspath(options.state))),

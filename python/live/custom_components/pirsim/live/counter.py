@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Union
 
 LONGEST_GUESS_S = 300.0
-"""Once nothing has been known for longer, no count is told."""
+"""Once nothing has been known for longer, no count is given."""
 LONGEST_GAP_S = 6 * 3600.0
 """After a longer one a counter begins anew: nothing of what it knew is left by then (assumed; 1 to 24 h)."""
 
@@ -27,7 +27,7 @@ State = Optional[bool]
 
 
 class ClockSteppedBack(ValueError):
-    """The time is before what the counter was told last."""
+    """The time is before that of the last update()."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Estimate:
     """The least number that as many or fewer have even odds of; None: nothing has been known for five minutes."""
     p_nobody: float | None
     probabilities: tuple[float, ...]
-    """Of 0, 1, ... people; empty where none is told."""
+    """Of 0, 1, ... people; empty where no count is given."""
     known: bool
     """Something was known of a sensor in the reading."""
     moved: bool
@@ -142,7 +142,7 @@ def _models(told: Any) -> list[_Model]:
     if "figures_off" in told:
         pairs += [_member(told["figures_off"], name) for name in _FIGURES]
     for pair in pairs:
-        for value in (_list(pair, "expected_error and figures_off") + [None, None])[:2]:
+        for value in _list(pair, "expected_error and figures_off", 2):
             _number(value, "expected_error and figures_off")
     _text(told.get("warning", ""), "warning")
     names = [_text(name, "sensor_names") for name in _list(told.get("sensor_names", [""] * n_sensors), "sensor_names", n_sensors)]
@@ -156,8 +156,8 @@ def _models(told: Any) -> list[_Model]:
 class Counter:
     """Counts reading by reading. A reading is `step_s` seconds long and begins at a whole multiple of them since 1970.
 
-    `update()` tells what sensors say from a moment on; a reading has motion if a sensor had it at any time in it, none
-    if it was known throughout, and is unknown else. Until a sensor is told of, it is unknown. Not for several threads.
+    `update()` takes what sensors report from a moment on. A reading has motion if a sensor had it at any time in it, none
+    if it was known throughout, and is unknown otherwise. A sensor is unknown until it reports. Not for several threads.
     """
 
     def __init__(self, counter: Union[str, os.PathLike[str], Mapping[str, Any]]) -> None:
@@ -211,7 +211,7 @@ class Counter:
         sensors that the counter hasn't."""
         _number(time, "time")
         if time < self._time:
-            raise ClockSteppedBack(f"{self._time - time:.3f} s before what was told last")
+            raise ClockSteppedBack(f"{self._time - time:.3f} s before the last update")
         if unknown := set(states or {}) - set(self.sensors):
             raise KeyError(f"no sensor is called {', '.join(sorted(unknown))}; there are {', '.join(self.sensors)}")
         reading = math.floor(time / self.step_s)
@@ -241,7 +241,7 @@ class Counter:
         return ended
 
     def forget(self, time: Time) -> list[Estimate]:
-        """From `time` on nothing is known of any sensor until it is told of again: a connection was lost. As update()."""
+        """From `time` on nothing is known of any sensor until it reports again: a connection was lost. As update()."""
         return self.update(time, dict.fromkeys(self.sensors))
 
     def state(self) -> dict[str, Any]:
@@ -324,7 +324,7 @@ def _middle(counts: list[float]) -> int:
 class Occupancy:
     """Somebody is there from a motion on, until P(nobody) reaches `off_at`: what `pirsim control --counter` weighs.
 
-    Motion alone begins it. Once no count is told, it is unknown, until there is motion or P(nobody) is at `off_at`."""
+    Motion alone begins it. Once no count is given, it is unknown until there is motion or P(nobody) is at `off_at`."""
 
     def __init__(self, off_at: float = 0.9) -> None:
         """off_at: P(nobody), 0 to 1. Raises ValueError."""

@@ -21,7 +21,7 @@ _log = logging.getLogger("pirsim_live")
 _KEYS = ("occupancy", "presence", "motion", "state")
 _NUMBER = re.compile(r"[+-]?([0-9]+[.,]?[0-9]*|[.,][0-9]+)(e[+-]?[0-9]+)?")
 _SMALL = str.maketrans(string.ascii_uppercase, string.ascii_lowercase)
-_UNHEARD_S = 300.0  # after which a sensor is told that has said nothing; assumed (1-30 min)
+_UNHEARD_S = 300.0  # after which the log names the sensors that said nothing; assumed (1-30 min)
 
 
 def state_of_word(text: str) -> State:
@@ -82,7 +82,7 @@ class Bridge:
         self._sources = list(sources)
         told = [source.sensor for source in self._sources]
         if sorted(told) != sorted(counter.sensors):
-            raise ValueError(f"the counter is for {', '.join(counter.sensors)}; topics are told of {', '.join(told) or 'none'}")
+            raise ValueError(f"the counter has the sensors {', '.join(counter.sensors)}; topics are given for {', '.join(told) or 'none'}")
         if len({(source.topic, source.key) for source in self._sources}) < len(self._sources):
             raise ValueError("two sensors have one topic")
         self._room = LiveRoom(counter, off_at, clock=clock, monotonic=monotonic)
@@ -115,7 +115,7 @@ class Bridge:
             client.subscribe(topic, qos=1)
         client.publish(f"{self._discovery}/device/pirsim_{self._name}/config", json.dumps(self._device()), 1, True)
         client.publish(self._topic("status"), "online", 1, True)
-        _log.info("connected: %d sensors, told on %s", len(self._sources), self._topic("state"))
+        _log.info("connected: %d sensors, counts are on %s", len(self._sources), self._topic("state"))
         self._tell()
 
     def _lose(self, _client: paho.Client, *_: Any) -> None:
