@@ -455,7 +455,8 @@ TEST_CASE("Modes are found where a count has several: they explain the motion be
   // One person in the quieter and the busier mode.
   CHECK(of_two.rooms[0].emissions[2 * 2 + 1] == Approx(0.1).margin(0.06));
   CHECK(of_two.rooms[0].emissions[3 * 2 + 1] == Approx(0.9).margin(0.06));
-  // They last as long as they do, not as training assumes at first: five standard errors of 80 changes in 4000 readings.
+  // They last as long as they do, not as training assumes at first: five standard errors of 80 changes in 4000
+  // readings.
   for (const std::size_t mode : {2U, 3U}) {
     const std::vector<double>& moves = of_two.rooms[0].moves;
     const double stays = moves[mode * 4 + mode] / (moves[mode * 4 + 2] + moves[mode * 4 + 3]);
