@@ -93,8 +93,8 @@ inline constexpr int most_tries = 300;
 
 /// Room `number` (from 1) of these ranges: the same for the same seed and number, whatever else is drawn. Every seat
 /// can be reached by the largest body that a schedule draws, and every sensor sees somebody; a room that fails is drawn
-/// again from the next sub-stream. Throws Error(infeasible) after most_tries, saying what failed how often, and
-/// Error(input) for a sensor model that isn't known.
+/// again from the next sub-stream, a meeting room after most_tries of them with a narrow table as often again. Throws
+/// Error(infeasible) after all, saying what failed how often, and Error(input) for a sensor model that isn't known.
 [[nodiscard]] DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number,
                                   const io::SceneOptions& options = {});
 

@@ -137,7 +137,7 @@ class FlatFurnisher {
     build_shell(plan_, flat_.height_m, flat_.scene);
     for (const bool has_place : {true, false}) {
       for (std::size_t i = 0; i < own.rooms.size(); ++i) {
-        asked_in_ = &own.rooms[i].id;
+        asked_in_ = &own.rooms[i];
         for (const PlanPieceSpec& piece : own.rooms[i].furniture.value_or(std::vector<PlanPieceSpec>{}))
           if (is_placed(piece) == has_place) add_piece(floors_[i], piece);
       }
@@ -145,18 +145,20 @@ class FlatFurnisher {
     asked_ = nullptr;
     for (std::size_t i = 0; i < own.rooms.size(); ++i) {
       if (own.rooms[i].furniture) continue;
+      asked_in_ = &own.rooms[i];
       if (own.rooms[i].kind == Kind::bedroom) add_bed(floors_[i], true, 2);
       furnish_room(i);
     }
+    name_by_rooms();
     hang_sensors(own, plan_, spec_, stream_, flat_);
     return result();
   }
 
  private:
   std::variant<FurnishedFlat, NoPlace> result() {
-    if (!lacking_.empty()) return NoPlace{lacking_};
+    if (!lacking_.empty()) return NoPlace{lacking_, lacking_at_};
     flat_.rooms = plan_.rooms;
-    return FurnishedFlat{std::move(flat_), std::move(demands_)};
+    return FurnishedFlat{std::move(flat_), std::move(demands_), std::move(origins_)};
   }
 
   // Sizes are `assumed`: common furniture, as in the shipped flat; the ranges that were looked at stand behind.
@@ -183,8 +185,12 @@ class FlatFurnisher {
   void fail(const std::string& reason) {
     if (!lacking_.empty()) return;
     lacking_ = reason;
-    if (asked_ != nullptr) lacking_ += " in '" + *asked_in_ + "', line " + std::to_string(asked_->where.line);
+    if (asked_in_ == nullptr) return;
+    lacking_ += " in '" + asked_in_->id + "'";
+    lacking_at_ = origin();
   }
+  /// Of what is put down now: the piece that a plan asks for, or the room that has what is usual.
+  [[nodiscard]] const Where& origin() const { return asked_ != nullptr ? asked_->where : asked_in_->where; }
 
   /// Of what has no leaf, so much as a usual door is wide.
   void keep_doorway_free(const Doorway& door, double depth_m) {
@@ -256,10 +262,30 @@ class FlatFurnisher {
   }
   [[nodiscard]] int places(int usual) const { return asked_ != nullptr ? asked_->places.value_or(usual) : usual; }
 
-  /// "sofa", then "sofa_2".
+  /// "sofa", then "sofa_2". In a plan each room counts its own, and name_by_rooms() says which.
   std::string named(const std::string& kind) {
-    const int which = ++numbers_[kind];
-    return which == 1 ? kind : kind + '_' + std::to_string(which);
+    const std::string room = asked_in_ == nullptr ? "" : of_room + asked_in_->id + of_room;
+    if (!room.empty()) rooms_with_[kind].insert(asked_in_->id);
+    const int which = ++numbers_[kind + room];
+    return kind + room + (which == 1 ? "" : '_' + std::to_string(which));
+  }
+  /// "sofa", or "sofa_ROOM" where another room has one as well: whatever the order of a plan's rooms.
+  void name_by_rooms() {
+    const auto rename = [&](std::string& name) {
+      const std::size_t from = name.find(of_room), to = name.rfind(of_room);
+      if (from == to) return;
+      const bool is_alone = rooms_with_.at(name.substr(0, from)).size() == 1;
+      const std::string room = is_alone ? "" : '_' + name.substr(from + 1, to - from - 1);
+      name = name.substr(0, from) + room + name.substr(to + 1);
+    };
+    for (SeatSpec& seat : flat_.scene.seats) rename(seat.id);
+    for (PlaceSpec& place : flat_.scene.places) rename(place.id);
+    for (TriMesh& mesh : flat_.scene.meshes) rename(mesh.name);
+    for (const auto& [name, where] : std::exchange(origins_, {})) {
+      std::string renamed = name;
+      rename(renamed);
+      origins_[renamed] = where;
+    }
   }
 
   void add_piece(RoomFloor& floor, const PlanPieceSpec& piece) {
@@ -323,11 +349,13 @@ class FlatFurnisher {
                 std::vector<std::string> uses) {
     const Spot seat{spot * own, spot.quarters + quarters};
     flat_.scene.seats.push_back({id, seat.frame(height), std::move(uses)});
+    if (asked_in_ != nullptr) origins_[id] = origin();
   }
   void add_place(const std::string& id, PlacePosture posture, const Spot& spot, const Vec2& own, int quarters,
                  double height, std::vector<std::string> uses) {
     const Spot place{spot * own, spot.quarters + quarters};
     flat_.scene.places.push_back({id, posture, place.frame(height), std::move(uses)});
+    if (asked_in_ != nullptr) origins_[id] = origin();
   }
 
   // -- beds ----------------------------------------------------------------------------------------------------------
@@ -361,12 +389,12 @@ class FlatFurnisher {
     const Piece piece{solid, {{left, foot}, {right, -off_wall_m}}};
     const auto spot = put_at_wall(floor, piece, half + off_wall_m);
     if (!spot) return fail("there was no place for a bed");
-    const std::string number = std::to_string(++beds_);
-    add("bed " + number, *spot, {{solid, 0.0, bed_height_m}});
+    const std::string bed = asked_in_ != nullptr ? named("bed") : "bed_" + std::to_string(++beds_);
+    add(asked_in_ != nullptr ? bed : "bed " + std::to_string(beds_), *spot, {{solid, 0.0, bed_height_m}});
     const double x = is_wide ? 0.5 * half : 0.0;
     for (int k = 0; k < sleepers; ++k) {
       const double at = sleepers == 1 ? side * x : k == 0 ? -x : x;
-      const std::string id = "bed_" + number + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
+      const std::string id = bed + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
       add_place(id, PlacePosture::lie, *spot, {at, -pelvis_from_wall_m}, 0, bed_height_m, {"sleep"});
       if (sleepers == 2) demands_.shared_beds.push_back(id);
     }
@@ -520,12 +548,12 @@ class FlatFurnisher {
     const auto spot = put_at_wall(floor, {with_sitter, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half);
     if (!spot && wanted == Wanted::always) return fail("there was no place for a desk");
     if (!spot) return;
-    const std::string number = std::to_string(++desks_);
+    const std::string desk = asked_in_ != nullptr ? named("desk") : "desk_" + std::to_string(++desks_);
     std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
     for (const double x : {0.05 - half, half - 0.05})
       parts.push_back({{{x - 0.02, front + 0.02}, {x + 0.02, -off_wall_m - 0.02}}, 0.0, 0.71});
-    add("desk " + number, *spot, parts);
-    add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
+    add(asked_in_ != nullptr ? desk : "desk " + std::to_string(desks_), *spot, parts);
+    add_seat(desk, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
   }
 
   /// Where it fits; a drawn flat may go without.
@@ -549,11 +577,15 @@ class FlatFurnisher {
     Rectangle area;
     std::string fault;  ///< of what is put there
   };
-  std::vector<Taken> taken_;               ///< by doors, and by what a plan gives a place
-  const PlanPieceSpec* asked_ = nullptr;   ///< what is put down, if a plan asks for it
-  const std::string* asked_in_ = nullptr;  ///< in this room
-  Diagnostics* faults_ = nullptr;          ///< of a plan
-  std::map<std::string, int> numbers_;     ///< of things by kind
+  std::vector<Taken> taken_;                ///< by doors, and by what a plan gives a place
+  const PlanPieceSpec* asked_ = nullptr;    ///< what is put down, if a plan asks for it
+  const PlanRoomSpec* asked_in_ = nullptr;  ///< in this room of a plan, or none
+  Origins origins_;                         ///< of seats and places of a plan
+  Where lacking_at_;
+  static constexpr char of_room = '\n';                      ///< around a room in names that aren't final; no id has it
+  std::map<std::string, std::set<std::string>> rooms_with_;  ///< things of that kind
+  Diagnostics* faults_ = nullptr;                            ///< of a plan
+  std::map<std::string, int> numbers_;                       ///< of things by kind (and room)
   int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
 };
 
@@ -877,36 +909,90 @@ void build_shell(const FlatPlan& plan, double height_m, SceneSpec& scene) { Shel
 
 namespace {
 
-/// Attempts at a flat, until one has no fault.
-struct Attempts {
-  std::string name;        ///< of the scene
-  std::string drawn_from;  ///< for messages
-  int most = 0;
-  Where where;
+/// What attempts at a plan came to.
+struct PlanFault {
+  ErrorCode code = ErrorCode::input;
+  std::vector<Issue> issues;
 };
 
-/// furnish(stream): a FurnishedFlat or NoPlace; fault_of(scene, demands): or nothing.
-template <typename Furnish, typename FaultOf>
-DrawnFlat first_usable(const Attempts& attempts, std::uint64_t seed, int number, ModelFinder& models,
-                       const Furnish& furnish, const FaultOf& fault_of) {
-  Failures failures;
-  for (int tries = 1; tries <= attempts.most; ++tries) {
-    Stream stream({seed, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(tries), Purpose::flat});
-    auto drawn = furnish(stream);
-    if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
-      failures.add(lacking->reason);
-      continue;
+bool same_issue(const Issue& a, const Issue& b) { return a.where == b.where && a.message == b.message; }
+
+class PlanDrawer {
+ public:
+  PlanDrawer(const HomePlanSpec& plan, std::uint64_t seed, int number, const io::SceneOptions& options)
+      : seed_(seed), number_(number), models_(named(plan), plan.where, options) {}
+
+  /// One that has no fault, or what most attempts lacked.
+  std::variant<DrawnFlat, PlanFault> draw(const HomePlanSpec& spec, int most_tries) {
+    PlanFault lacking{ErrorCode::infeasible, {}};
+    std::vector<int> times;
+    const auto note = [&](const Issue& issue) {
+      const auto known = std::ranges::find_if(lacking.issues, [&](const Issue& one) { return same_issue(one, issue); });
+      const auto i = static_cast<std::size_t>(known - lacking.issues.begin());
+      if (known == lacking.issues.end()) lacking.issues.push_back(issue), times.push_back(0);
+      ++times[i];
+    };
+    try {
+      const FlatPlan plan = plan_of(spec);
+      for (int tries = 1; tries <= most_tries; ++tries) {
+        Diagnostics faults;
+        Stream stream({seed_, static_cast<std::uint32_t>(number_), static_cast<std::uint32_t>(tries), Purpose::flat});
+        auto drawn = furnish_flat(spec, plan, stream, faults);
+        faults.throw_if_errors();
+        if (const auto* no_place = std::get_if<NoPlace>(&drawn)) {
+          note({Severity::error, no_place->where, no_place->reason});
+          continue;
+        }
+        auto& [flat, demands, origins] = std::get<FurnishedFlat>(drawn);
+        flat.number = number_;
+        flat.tries = tries;
+        flat.scene.name = spec.name;
+        models_.add_to(flat.scene);
+        const std::optional<Issue> fault = unreached(flat.scene, origins);
+        if (!fault) return std::move(flat);
+        note({Severity::error, fault->where.line > 0 ? fault->where : spec.where, fault->message});
+      }
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::input) throw;
+      return PlanFault{error.code(), error.issues()};
     }
-    auto& [flat, demands] = std::get<FurnishedFlat>(drawn);
-    flat.number = number;
-    flat.tries = tries;
-    flat.scene.name = attempts.name;
-    models.add_to(flat.scene);
-    const std::string fault = fault_of(flat.scene, demands);
-    if (fault.empty()) return std::move(flat);
-    failures.add(fault);
+    const auto most = std::ranges::max_element(times) - times.begin();
+    lacking.issues = {lacking.issues[static_cast<std::size_t>(most)]};
+    return lacking;
   }
-  failures.give_up("flat", number, attempts.drawn_from, attempts.where);
+
+ private:
+  static std::vector<ModelFinder::Named> named(const HomePlanSpec& plan) {
+    std::vector<ModelFinder::Named> models;
+    for (const PlanRoomSpec& room : plan.rooms)
+      for (const PlanSensorSpec& sensor : room.sensors.value_or(std::vector<PlanSensorSpec>{}))
+        models.push_back({{sensor.model}, sensor.where});
+    return models;
+  }
+
+  std::uint64_t seed_;
+  int number_;
+  ModelFinder models_;
+};
+
+/// The first change of the plan with which this fault is gone, and no other one comes; else the first with which rooms,
+/// doors and pieces fit together, and only a way is missing; or nothing.
+std::string what_helps(const Issue& issue, const PlanFault& fault, const HomePlanSpec& plan, PlanDrawer& drawer) {
+  constexpr int tries_of_changes = 3;
+  std::string helps_here;
+  for (const PlanChange& change : changes_of(plan, issue.where)) {
+    const auto drawn = drawer.draw(change.plan, tries_of_changes);
+    const auto* left = std::get_if<PlanFault>(&drawn);
+    const auto is_known = [&](const Issue& other) {
+      return !same_issue(other, issue) &&
+             std::ranges::any_of(fault.issues, [&](const Issue& one) { return same_issue(one, other); });
+    };
+    if (left == nullptr || (left->code == fault.code && std::ranges::all_of(left->issues, is_known)))
+      return "; " + change.text + " helps";
+    if (helps_here.empty() && fault.code == ErrorCode::input && left->code == ErrorCode::infeasible)
+      helps_here = "; " + change.text + " helps";
+  }
+  return helps_here;
 }
 
 }  // namespace
@@ -916,27 +1002,35 @@ DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const 
   Stream people({seed, static_cast<std::uint32_t>(number), 0, Purpose::flat_household});
   const int residents = draw(spec.residents, people);
   ModelFinder models({{spec.models, spec.models_where}}, spec.where, options);
-  return first_usable(
-      {"flat " + std::to_string(number), "these ranges", most_tries, spec.where}, seed, number, models,
-      [&](Stream& stream) { return furnish_flat(spec, residents, stream); }, fault_of);
+  Failures failures;
+  for (int tries = 1; tries <= most_tries; ++tries) {
+    Stream stream({seed, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(tries), Purpose::flat});
+    auto drawn = furnish_flat(spec, residents, stream);
+    if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
+      failures.add(lacking->reason);
+      continue;
+    }
+    auto& [flat, demands, origins] = std::get<FurnishedFlat>(drawn);
+    flat.number = number;
+    flat.tries = tries;
+    flat.scene.name = "flat " + std::to_string(number);
+    models.add_to(flat.scene);
+    const std::string fault = fault_of(flat.scene, demands);
+    if (fault.empty()) return std::move(flat);
+    failures.add(fault);
+  }
+  failures.give_up("flat", number, spec.where);
 }
 
 DrawnFlat draw_flat(const HomePlanSpec& spec, std::uint64_t seed, int number, const io::SceneOptions& options) {
   constexpr int most_tries_of_plans = 30;  // what has its place stays there
-  const FlatPlan plan = plan_of(spec);
-  std::vector<ModelFinder::Named> named;
-  for (const PlanRoomSpec& room : spec.rooms)
-    for (const PlanSensorSpec& sensor : room.sensors.value_or(std::vector<PlanSensorSpec>{}))
-      named.push_back({{sensor.model}, sensor.where});
-  ModelFinder models(std::move(named), spec.where, options);
-  const auto furnish = [&](Stream& stream) {
-    Diagnostics faults;
-    auto drawn = furnish_flat(spec, plan, stream, faults);
-    faults.throw_if_errors();
-    return drawn;
-  };
-  return first_usable({spec.name, "this plan", most_tries_of_plans, spec.where}, seed, number, models, furnish,
-                      [](const SceneSpec& scene, const Demands&) { return unreached(scene); });
+  PlanDrawer drawer(spec, seed, number, options);
+  auto drawn = drawer.draw(spec, most_tries_of_plans);
+  if (auto* flat = std::get_if<DrawnFlat>(&drawn)) return std::move(*flat);
+  const PlanFault& fault = std::get<PlanFault>(drawn);
+  std::vector<Issue> issues = fault.issues;
+  for (std::size_t i = 0; i < issues.size(); ++i) issues[i].message += what_helps(fault.issues[i], fault, spec, drawer);
+  throw Error(fault.code, std::move(issues));
 }
 
 }  // namespace pirsim::dataset

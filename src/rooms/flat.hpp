@@ -13,6 +13,7 @@ namespace pirsim::dataset {
 struct FurnishedFlat {
   DrawnFlat flat;
   Demands demands;
+  Origins origins;  ///< of a plan: where its seats and places come from
 };
 [[nodiscard]] std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream);
 

@@ -65,6 +65,15 @@ struct FlatPlan {
 /// Of rooms that touch, unless they are of one area.
 [[nodiscard]] std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms);
 
+/// What the author of a plan could do otherwise.
+struct PlanChange {
+  std::string text;  ///< "`hinge: left` at door 'bath' (line 14)"
+  HomePlanSpec plan;
+};
+/// Doors hung and placed otherwise, pieces without their place or left out, rooms that reach to each other, doors that
+/// are missing. Those that change least come first, and of equal ones those at the place of the fault.
+[[nodiscard]] std::vector<PlanChange> changes_of(const HomePlanSpec& plan, const Where& fault);
+
 /// Rooms and ways of a plan, in its order. Throws Error(input) for what doesn't fit together.
 [[nodiscard]] FlatPlan plan_of(const HomePlanSpec& plan);
 /// Whether a room's wall on that side of the page does.

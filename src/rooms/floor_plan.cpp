@@ -160,41 +160,45 @@ TriMesh floor_mesh(const std::vector<Rectangle>& pieces) {
 
 namespace {
 
-/// What takes somebody to each seat, place and point.
-std::vector<ScriptedAction> stops_of(const SceneSpec& scene) {
+/// What takes somebody to each seat and place.
+std::vector<ScriptedAction> stops_of(const SceneSpec& scene, const Origins& origins) {
+  const auto origin = [&](const std::string& id) {
+    const auto known = origins.find(id);
+    return known == origins.end() ? Where{} : known->second;
+  };
   std::vector<ScriptedAction> stops;
-  for (const SeatSpec& seat : scene.seats) stops.push_back({action::Sit{seat.id}, {}, {}, {}});
+  for (const SeatSpec& seat : scene.seats) stops.push_back({action::Sit{seat.id}, {}, {}, origin(seat.id)});
   for (const PlaceSpec& place : scene.places) {
     if (place.posture == PlacePosture::lie) {
-      stops.push_back({action::Lie{place.id}, {}, {}, {}});
+      stops.push_back({action::Lie{place.id}, {}, {}, origin(place.id)});
     } else {
-      stops.push_back({action::Stand{place.id}, {}, {}, {}});
+      stops.push_back({action::Stand{place.id}, {}, {}, origin(place.id)});
     }
   }
   return stops;
 }
 
-/// To every seat and place, in and out through each door by turns.
-std::vector<ScriptedAction> ways_through(const SceneSpec& scene) {
+/// To every seat and place, in and out through each door by turns; only through the doors where there is neither.
+std::vector<ScriptedAction> ways_through(const SceneSpec& scene, const Origins& origins) {
   std::vector<ScriptedAction> actions;
-  const std::vector<ScriptedAction> stops = stops_of(scene);
+  const std::vector<ScriptedAction> stops = stops_of(scene, origins);
   const std::size_t n_doors = scene.entrances.size();
   for (std::size_t i = 0; i < std::max(stops.size(), n_doors); ++i) {
     const std::string& door = scene.entrances[i % n_doors].id;
     actions.push_back({action::Enter{door}, {}, {}, {}});
-    actions.push_back(stops[i % stops.size()]);
+    if (!stops.empty()) actions.push_back(stops[i % stops.size()]);
     actions.push_back({action::Leave{door}, {}, {}, {}});
   }
   return actions;
 }
 
 /// The first is the largest; where sides of beds matter somebody of usual size comes as well.
-ScriptSpec tour_of(const SceneSpec& scene, const Demands& demands) {
+ScriptSpec tour_of(const SceneSpec& scene, const Demands& demands, const Origins& origins = {}) {
   ScriptSpec script;
   script.name = "tour of " + scene.name;
   std::vector<PersonSpec> visitors{largest_body("visitor")};
   if (!demands.shared_beds.empty()) visitors.emplace_back().id = "other";
-  for (PersonSpec& visitor : visitors) visitor.actions = ways_through(scene);
+  for (PersonSpec& visitor : visitors) visitor.actions = ways_through(scene, origins);
   script.trials.push_back({"1", std::move(visitors)});
   return script;
 }
@@ -210,12 +214,12 @@ bool gets_in_at_own_side(const sim::PersonModel& person, const SceneSpec& scene,
 
 }  // namespace
 
-std::string unreached(const SceneSpec& scene) {
+std::optional<Issue> unreached(const SceneSpec& scene, const Origins& origins) {
   try {
-    static_cast<void>(compile(scene, tour_of(scene, {})));
+    static_cast<void>(compile(scene, tour_of(scene, {}, origins)));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
-    return error.issues().front().message;
+    return error.issues().front();
   }
   return {};
 }
@@ -252,7 +256,7 @@ void ModelFinder::add_to(SceneSpec& scene) {
   move_arrays(scene);
 }
 
-void Failures::give_up(const std::string& what, int number, const std::string& drawn_from, const Where& where) const {
+void Failures::give_up(const std::string& what, int number, const Where& where) const {
   std::string told;
   int tries = 0;
   for (const auto& [reason, times] : reasons_) {
@@ -261,7 +265,7 @@ void Failures::give_up(const std::string& what, int number, const std::string& d
   }
   throw Error(ErrorCode::infeasible, where,
               what + ' ' + std::to_string(number) + ": none of " + std::to_string(tries) + ' ' + what +
-                  "s drawn from " + drawn_from + " could be used (" + told + "): allow more space or less furniture");
+                  "s drawn from these ranges could be used (" + told + "): allow more space or less furniture");
 }
 
 namespace {
@@ -277,11 +281,14 @@ constexpr double chair_zone_m = 1.0;                          // 0.8-1.2: behind
 constexpr double seat_spacing_m = 0.70, table_width_m = 1.1;  // 0.6-0.75 and 1.0-1.4
 constexpr double cupboard_depth_m = 0.42;                     // 0.35-0.45
 constexpr double off_wall_m = 0.03;                           // of a sensor
-constexpr int attempts = 60;                                  // to place one thing
+// Where these leave no place for a meeting table: a narrow one, chairs drawn in, nobody behind its ends.
+constexpr double narrow_table_m = 0.8, narrow_chair_zone_m = 0.75;  // 0.7-0.9, 0.7-0.8
+constexpr int attempts = 60;                                        // to place one thing
 
 class Furnisher {
  public:
-  Furnisher(const RoomSpec& spec, Stream& stream) : spec_(spec), stream_(stream), plan_(draw_shape()) {}
+  Furnisher(const RoomSpec& spec, Fit fit, Stream& stream)
+      : spec_(spec), fit_(fit), stream_(stream), plan_(draw_shape()) {}
 
   std::variant<DrawnRoom, NoPlace> furnish() {
     for (int i = draw(spec_.doors, stream_); i > 0; --i) add_door();
@@ -501,8 +508,12 @@ class Furnisher {
     // At the table's ends: one for an odd number, two for half of the large even ones.
     const int heads = seats % 2 + (seats % 2 == 0 && seats >= 6 && stream_.index(2) == 0 ? 2 : 0);
     const int a_side = std::max(1, (seats - heads) / 2);
-    const double x = 0.5 * (a_side * seat_spacing_m + (heads > 0 ? 0.5 : 0.2)), z = 0.5 * table_width_m;
-    const Rectangle own{{-x - chair_zone_m, -z - chair_zone_m}, {x + chair_zone_m, z + chair_zone_m}};
+    const bool is_tight = fit_ == Fit::tight;
+    const double x = 0.5 * (a_side * seat_spacing_m + (heads > 0 ? 0.5 : 0.2));
+    const double z = 0.5 * (is_tight ? narrow_table_m : table_width_m);
+    const double behind = is_tight ? narrow_chair_zone_m : chair_zone_m;
+    const double left = is_tight && heads < 2 ? 0.0 : behind, right = is_tight && heads < 1 ? 0.0 : behind;
+    const Rectangle own{{-x - left, -z - behind}, {x + right, z + behind}};
     const auto spot = find_spot(own, [&] { return anywhere(static_cast<int>(stream_.index(2))); });
     if (!spot) return fail("there was no place for the table");
     plan_.occupy(*spot * own);
@@ -598,6 +609,7 @@ class Furnisher {
   }
 
   const RoomSpec& spec_;
+  Fit fit_;
   Stream& stream_;
   DrawnRoom room_;
   FloorPlan plan_;
@@ -616,8 +628,8 @@ const std::vector<std::string>& models_of(const SensorGroupSpec& group) {
   return group.mount == Mount::ceiling ? ceiling_default : other_default;
 }
 
-std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream) {
-  return Furnisher(spec, stream).furnish();
+std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Fit fit, Stream& stream) {
+  return Furnisher(spec, fit, stream).furnish();
 }
 
 namespace {
@@ -633,9 +645,10 @@ DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const 
   for (const SensorGroupSpec& group : spec.sensors) named.push_back({group.models, group.where});
   ModelFinder models(std::move(named), spec.where, options);
   Failures failures;
-  for (int tries = 1; tries <= most_tries; ++tries) {
+  const int all_tries = spec.kind == RoomKind::meeting ? 2 * most_tries : most_tries;
+  for (int tries = 1; tries <= all_tries; ++tries) {
     Stream stream({seed, static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(tries), Purpose::room});
-    auto drawn = furnish(spec, stream);
+    auto drawn = furnish(spec, tries <= most_tries ? Fit::usual : Fit::tight, stream);
     if (const auto* lacking = std::get_if<NoPlace>(&drawn)) {
       failures.add(lacking->reason);
       continue;
@@ -653,7 +666,7 @@ DrawnRoom draw_room(const RoomSpec& spec, std::uint64_t seed, int number, const 
     if (fault.empty()) return std::move(room);
     failures.add(fault);
   }
-  failures.give_up("room", number, "these ranges", spec.where);
+  failures.give_up("room", number, spec.where);
 }
 
 }  // namespace pirsim::dataset

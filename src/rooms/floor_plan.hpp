@@ -93,7 +93,10 @@ struct BoxPart {
 /// Why an attempt failed, in words that fit behind "n times".
 struct NoPlace {
   std::string reason;
+  Where where{};  ///< of a plan: what has no place
 };
+/// Where seats and places of a scene come from, by their ids.
+using Origins = std::map<std::string, Where>;
 
 /// What a scene must allow besides: its seats, places and entrances are reached, and its sensors see somebody.
 struct Demands {
@@ -101,8 +104,8 @@ struct Demands {
   std::size_t least_places = 0;            ///< of a grid of 0.25 m, where each sensor must see who stands there
 };
 
-/// What the largest person can't reach from the entrances, as who looked for a way says it; or nothing.
-[[nodiscard]] std::string unreached(const SceneSpec& scene);
+/// What the largest person can't reach from the entrances, as who looked for a way says it, at its origin; or nothing.
+[[nodiscard]] std::optional<Issue> unreached(const SceneSpec& scene, const Origins& origins);
 /// Why nobody could use what was drawn, or nothing: what the largest person can't reach from the entrances, a sensor
 /// that sees nobody.
 [[nodiscard]] std::string fault_of(const SceneSpec& scene, const Demands& demands = {});
@@ -131,8 +134,7 @@ class Failures {
  public:
   void add(const std::string& reason) { ++reasons_[reason]; }
   /// "room 3: none of 300 rooms drawn ..."; what: "room".
-  [[noreturn]] void give_up(const std::string& what, int number, const std::string& drawn_from,
-                            const Where& where) const;
+  [[noreturn]] void give_up(const std::string& what, int number, const Where& where) const;
 
  private:
   std::map<std::string, int> reasons_;
@@ -142,7 +144,8 @@ class Failures {
 
 /// Which models a sensor of the group may be: its own, or the usual one for where it hangs.
 [[nodiscard]] const std::vector<std::string>& models_of(const SensorGroupSpec& group);
+enum class Fit { usual, tight };  ///< tight: meeting tables with as little room as will do
 /// A room that isn't checked yet. Sensors have their models' names, but not the models.
-[[nodiscard]] std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream);
+[[nodiscard]] std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Fit fit, Stream& stream);
 
 }  // namespace pirsim::dataset

@@ -359,4 +359,136 @@ HomePlanSpec read_home_plan(const std::filesystem::path& file, std::span<const s
 
 FlatPlan plan_of(const HomePlanSpec& plan) { return Layout(plan).lay_out(); }
 
+namespace {
+
+std::string line_of(const Where& where) { return " (line " + std::to_string(where.line) + ")"; }
+
+/// All that changes_of() knows.
+class PlanChanges {
+ public:
+  PlanChanges(const HomePlanSpec& plan, const Where& fault) : plan_(plan), fault_(fault) {}
+
+  std::vector<PlanChange> all() {
+    for (std::size_t i = 0; i < plan_.doors.size(); ++i) of_door(i);
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i) {
+      of_edges(i);
+      const auto& pieces = plan_.rooms[i].furniture;
+      for (std::size_t k = 0; pieces && k < pieces->size(); ++k) of_piece(i, k);
+    }
+    for (const PlanRoomSpec& room : plan_.rooms) doors_into(room);
+    std::ranges::stable_sort(changes_, {}, [](const Ranked& one) { return std::pair(one.rank, !one.is_there); });
+    std::vector<PlanChange> result;
+    for (Ranked& one : changes_)
+      if (result.size() < most) result.push_back(std::move(one.change));
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t most = 100;  // assumed: some seconds of attempts
+  enum Rank { turned, moved, resized, added, left_out };
+  struct Ranked {
+    PlanChange change;
+    Rank rank;
+    bool is_there;  ///< where the fault is
+  };
+
+  void add(Rank rank, const Where& where, const std::string& text, const auto& change) {
+    PlanChange& made = changes_.emplace_back(PlanChange{text, plan_}, rank, where == fault_).change;
+    change(made.plan);
+  }
+
+  void of_door(std::size_t i) {
+    const PlanDoorSpec& door = plan_.doors[i];
+    const std::string usual = door.from.empty() ? front_door_name : door.into;
+    const std::string name = "door '" + (door.id.empty() ? usual : door.id) + "'" + line_of(door.where);
+    for (const DoorHinge hinge : {DoorHinge::left, DoorHinge::right})
+      add(turned, door.where, "`hinge: " + std::string(word_of(hinge)) + "` at " + name,
+          [&](HomePlanSpec& plan) { plan.doors[i].hinge = hinge; });
+    if (!door.from.empty())
+      add(moved, door.where,
+          "opening " + name + " to the other side (`from: " + door.into + ", into: " + door.from + "`)",
+          [&](HomePlanSpec& plan) { std::swap(plan.doors[i].from, plan.doors[i].into); });
+    for (auto place : {&PlanDoorSpec::x_m, &PlanDoorSpec::y_m}) {
+      if (door.*place)
+        add(moved, door.where,
+            "leaving out `" + std::string(place == &PlanDoorSpec::x_m ? "x_m" : "y_m") + "` of " + name,
+            [&](HomePlanSpec& plan) { plan.doors[i].*place = {}; });
+    }
+    for (const PlanSide side : all_sides)
+      if (door.from.empty())
+        add(moved, door.where, "`wall: " + std::string(word_of(side)) + "`, without a place, of " + name,
+            [&](HomePlanSpec& plan) { plan.doors[i].wall = side, plan.doors[i].x_m = plan.doors[i].y_m = {}; });
+    for (const double width_m : {0.8, 0.7})
+      if (width_m < door.width_m)
+        add(resized, door.where, "`width_m: " + fixed(width_m, 1) + "` of " + name,
+            [&](HomePlanSpec& plan) { plan.doors[i].width_m = width_m; });
+  }
+
+  void of_piece(std::size_t i, std::size_t k) {
+    const PlanPieceSpec& piece = (*plan_.rooms[i].furniture)[k];
+    const std::string name = "the " + std::string(word_of(piece.kind)) + line_of(piece.where);
+    const auto change = [&](Rank rank, const std::string& text, const auto& edit) {
+      add(rank, piece.where, text, [&](HomePlanSpec& plan) { edit((*plan.rooms[i].furniture)[k]); });
+    };
+    const auto move_to = [&](const std::optional<PlanSide>& wall, const std::string& text) {
+      change(moved, text, [&](PlanPieceSpec& one) { one.wall = wall, one.x_m = one.y_m = {}; });
+    };
+    if (piece.x_m || piece.y_m) move_to(piece.wall, "leaving out the place of " + name);
+    for (const PlanSide side : all_sides)
+      if (piece.wall && side != *piece.wall)
+        move_to(side, "`wall: " + std::string(word_of(side)) + "`, without a place, of " + name);
+    if (piece.wall && piece.width_m)
+      change(resized, "leaving out `width_m` of " + name, [&](PlanPieceSpec& one) { one.width_m = {}; });
+    add(left_out, piece.where, "leaving out " + name, [&](HomePlanSpec& plan) {
+      auto& pieces = *plan.rooms[i].furniture;
+      pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(k));
+    });
+  }
+
+  /// To where another room's begin or end.
+  void of_edges(std::size_t i) {
+    constexpr double farthest_m = 0.6;  // assumed: more is meant
+    const PlanRoomSpec& room = plan_.rooms[i];
+    for (const PlanRoomSpec& other : plan_.rooms) {
+      for (auto axis : {&PlanRoomSpec::x_m, &PlanRoomSpec::y_m}) {
+        for (auto end : {&Range::least, &Range::most}) {
+          for (const double edge : {(other.*axis).least, (other.*axis).most}) {
+            Range range = room.*axis;
+            if (range.*end == edge || std::abs(range.*end - edge) > farthest_m) continue;
+            range.*end = edge;
+            if (range.most - range.least < least_m) continue;
+            add(resized, room.where,
+                "`" + std::string(axis == &PlanRoomSpec::x_m ? "x_m" : "y_m") + ": [" + shortest_number(range.least) +
+                    ", " + shortest_number(range.most) + "]` of '" + room.id + "'" + line_of(room.where),
+                [&](HomePlanSpec& plan) { plan.rooms[i].*axis = range; });
+          }
+        }
+      }
+    }
+  }
+
+  void doors_into(const PlanRoomSpec& room) {
+    const auto offer = [&](const std::string& from, std::optional<PlanSide> wall, const std::string& text) {
+      add(added, room.where, "a door `{" + text + "}`", [&](HomePlanSpec& plan) {
+        PlanDoorSpec& door = plan.doors.emplace_back();
+        door.from = from, door.into = room.id, door.wall = wall;
+      });
+    };
+    for (const PlanRoomSpec& other : plan_.rooms)
+      if (other.id != room.id) offer(other.id, {}, "from: " + other.id + ", into: " + room.id);
+    for (const PlanSide side : all_sides) offer({}, side, "into: " + room.id + ", wall: " + std::string(word_of(side)));
+  }
+
+  static constexpr double least_m = 0.6;
+  const HomePlanSpec& plan_;
+  const Where& fault_;
+  std::vector<Ranked> changes_;
+};
+
+}  // namespace
+
+std::vector<PlanChange> changes_of(const HomePlanSpec& plan, const Where& fault) {
+  return PlanChanges(plan, fault).all();
+}
+
 }  // namespace pirsim::dataset

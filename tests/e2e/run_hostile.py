@@ -55,6 +55,45 @@ class Hostile(Case):
         """What is too long is counted before anything is made of it."""
         return self.pirsim(*args, code=code, most_s=1.0, most_bytes=150_000_000, **inputs)
 
+    # --------------------------------------------------------------------------------------------------------- empty
+    def test_whatever_may_be_empty_is_drawn_or_refused_with_a_message(self):
+        data = lambda *parts: DATA.joinpath(*parts)
+        preview = ("-o", "p.png", "--width", 16, "--height", 16)
+        maps = ("0", "sensing", "split", "target", "schedule", "household", "for_each", "trials", "draw_by", "occupancy")
+        cases = (
+            (("preview", "--scene", data("rooms", "meeting_room.gltf"), "--script", data("studies", "studyA.yaml"), *preview),
+             ("trials", "trials.for_each", "trials.for_each.seat", "people", "people.0.actions", "sensing", "effects")),
+            (("preview", "--scene", data("rooms", "open_office.gltf"), "--script", data("studies", "office_week.yaml"), *preview),
+             ("schedule", "schedule.staff", "schedule.staff.0.seats", "schedule.meetings", "schedule.entrances", "pets")),
+            (("preview", "--scene", data("rooms", "flat.gltf"), "--script", data("studies", "flat_week.yaml"), *preview),
+             ("schedule.household", "schedule.household.residents", "schedule.household.residents.0", "pets")),
+            (("preview", "--scene", data("rooms", "open_hall.gltf"), "--script", data("studies", "density.yaml"), *preview),
+             ("people", "occupancy", "occupancy.counts", "occupancy.seats", "occupancy.entrances")),
+            (("dataset", data("recipes", "tiny.yaml"), "-o", "ds", "--shard", "9/9"),
+             ("rooms", "rooms.0", "rooms.0.sensors", "rooms.0.desks", "rooms.0.scenes", "schedule", "schedule.staff",
+              "rooms.1.schedule.meetings.durations_min", "rooms.1.schedule.meetings.probabilities", "effects", "effects.0",
+              "split", "exports", "draw_by", "sensing")),
+            (("room", "-o", "r.gltf"), ("sensors", "desks", "seats", "doors", "width_m")),
+            (("room", "--home", "-o", "h.gltf"), ("layout", "mount", "model", "sensors_at", "residents", "rooms")),
+            (("dataset", data("recipes", "homes.yaml"), "-o", "dh", "--shard", "9/9"),
+             ("rooms.0.household", "rooms.0.household.age_years", "rooms.0.sensors_at", "rooms.0.mount", "rooms.0.layout",
+              "rooms.0.model", "rooms.0.rooms", "rooms.0.residents")),
+            (("room", "--home", "--plan", data("plans", "my_flat.yaml"), "-o", "f.gltf"),
+             ("rooms", "doors", "rooms.0.furniture", "rooms.0.sensors", "rooms.0.furniture.0", "rooms.0.sensors.0", "doors.0",
+              "rooms.0.x_m")),
+            (("coverage", "--scene", data("rooms", "meeting_room.gltf"), "--script", data("studies", "studyB.yaml"), "-o", "c",
+              "--set", "spacing_m=3", "--set", "duration_s=1"),
+             ("without", "target", "target.x_shapes", "sensing")))
+        for command, keys in cases:
+            for key in keys:
+                value = "{}" if key.split(".")[-1] in maps else "[]"
+                with self.subTest(command=command[0], key=key, value=value):
+                    result = subprocess.run([PIRSIM, *map(str, command), "--set", f"{key}={value}"], cwd=self.folder,
+                                            capture_output=True, text=True, check=False)
+                    self.assertIn(result.returncode, (0, 2, 3, 5), result.stderr[-500:])
+                    if result.returncode:
+                        self.assertIn("error: ", result.stderr)
+
     # ---------------------------------------------------------------------------------------------------------- glTF
     def test_json_of_many_values_or_levels(self):
         empty = '{"asset":{"version":"2.0"},"nodes":[%s{}]}'

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "files/write/gltf_writer.hpp"
@@ -83,13 +84,173 @@ TEST_CASE("what a plan can't have is told with its place", "[home_plan]") {
            {"wall: left, y_m: 2", "wall: left, y_m: 0.5", "plan.yaml:3:75: error: sofa isn't inside of its room"},
            {"wall: left, y_m: 2", "wall: bottom, x_m: 2", "sofa is in the way of door 'front'"},
            {"y_m: 3}", "y_m: 3}, {kind: shower, wall: right, y_m: 3.2}", "shower is where a toilet is"},
-           {"y_m: 3}", "y_m: 3}, {kind: bed, wall: right}", "there was no place for a bed in 'bath', line 4"},
+           {"y_m: 3}", "y_m: 3}, {kind: bed, wall: right}",
+            "error: there was no place for a bed in 'bath'; leaving out"},
            {"wall: left, y_m: 2", "x_m: 2", "x_m: to which `wall` is its back?"},
            {"corner: top_left", "corner: top_left, model: EKMC1604112", "EKMC1604111"},
            {"corner: top_left", "height_m: 2", "height_m: it looks down from the ceiling"}}) {
     INFO(what << " -> " << instead);
     CHECK_THAT(plan_fault(two_rooms_with(what, instead)), contains(told));
   }
+}
+
+namespace {
+
+/// One thing a line, so that a remedy is one line's change.
+std::vector<std::string> lines_of_plan(const std::string& washbasin, const std::string& door) {
+  return {"pirsim_plan: 1",
+          "rooms:",
+          "  - {id: hall, kind: corridor, x_m: [0, 2], y_m: [-2, 0]}",
+          "  - id: bath",
+          "    kind: bath",
+          "    x_m: [0, 2]",
+          "    y_m: [0, 2.5]",
+          "    furniture:",
+          "      - {kind: washbasin, wall: right, " + washbasin + "}",
+          "      - {kind: toilet, wall: left, y_m: 2}",
+          "doors:",
+          "  - {into: hall, wall: bottom}",
+          "  - {from: hall, into: bath, " + door + "}"};
+}
+
+std::string text_of(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + '\n';
+  return text;
+}
+
+/// What the message says helps, done by hand: "`key: value` ... (line 9) helps", "leaving out the place of ... (line
+/// 9)".
+std::vector<std::string> as_advised(std::vector<std::string> lines, const std::string& message) {
+  const auto number = [&] { return std::stoul(message.substr(message.rfind("(line ") + 6)); };
+  const auto drop = [](std::string& line, const std::string& key) {
+    const std::size_t at = line.find(", " + key + ": ");
+    if (at == std::string::npos) return;
+    const std::size_t end = line.find_first_of(",}", line.find(": ", at) + 2);
+    line.erase(at, end - at);
+  };
+  const std::string advice = message.substr(message.rfind("; ") + 2);
+  if (advice.starts_with("a door `")) {
+    lines.push_back("  - " + advice.substr(8, advice.rfind('`') - 8));
+  } else if (advice.starts_with("`")) {
+    const std::string pair = advice.substr(1, advice.find('`', 1) - 1);
+    std::string& line = lines.at(number() - 1);
+    drop(line, pair.substr(0, pair.find(':')));
+    if (advice.find("without a place") != std::string::npos) drop(line, "x_m"), drop(line, "y_m");
+    line.insert(line.rfind('}'), ", " + pair);
+  } else if (advice.starts_with("leaving out the place of")) {
+    drop(lines.at(number() - 1), "x_m"), drop(lines.at(number() - 1), "y_m");
+  } else if (advice.starts_with("leaving out `")) {
+    drop(lines.at(number() - 1), advice.substr(13, advice.find('`', 13) - 13));
+  } else {
+    REQUIRE(advice.starts_with("leaving out the "));
+    lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(number() - 1));
+  }
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("a plan's fault has its place, what is in the way, and a remedy that works", "[home_plan]") {
+  using Case = std::array<std::string, 4>;
+  for (const auto& [washbasin, door, place, told] :
+       std::initializer_list<Case>{{"y_m: 1.4", "x_m: 0.6, hinge: left", "", ""},
+                                   {"y_m: 0.95", "x_m: 0.6, hinge: right", "9:9", "the open leaf of door 'bath' is 0."},
+                                   {"y_m: 0.9", "x_m: 1.5", "9:9", "washbasin is in the way of door 'bath'"},
+                                   {"y_m: 2.4", "x_m: 0.6", "9:9", "washbasin isn't inside of its room"},
+                                   {"y_m: 1.5}\n      - {kind: shelf, wall: right, y_m: 1.4", "x_m: 0.6", "10:9",
+                                    "shelf is where a washbasin is"},
+                                   {"y_m: 1.4", "x_m: 1.9", "13:5", "doesn't fit there"},
+                                   {"y_m: 1.4", "y_m: 0.6", "13:5", "runs along x"},
+                                   {"y_m: 1.4}\n      - {kind: bed, wall: top", "x_m: 0.6", "10:9",
+                                    "there was no place for a bed in 'bath'"}}) {
+    const std::vector<std::string> lines = lines_of_plan(washbasin, door);
+    INFO(text_of(lines));
+    const std::string fault = plan_fault(text_of(lines));
+    if (told.empty()) {
+      CHECK(fault.empty());
+      continue;
+    }
+    CHECK_THAT(fault, contains("plan.yaml:" + place + ": error: ") && contains(told) && contains(" helps"));
+    if (washbasin.find("kind") != std::string::npos) continue;  // a line more
+    CHECK(plan_fault(text_of(as_advised(lines, fault.substr(0, fault.find('\n'))))).empty());
+  }
+  CHECK_THAT(plan_fault(text_of(lines_of_plan("y_m: 0.95", "x_m: 0.6, hinge: right"))),
+             contains("; `hinge: left` at door 'bath' (line 13) helps"));
+  std::vector<std::string> shut_off = lines_of_plan("y_m: 1.4", "x_m: 0.6");
+  shut_off.pop_back();
+  const std::string fault = plan_fault(text_of(shut_off));
+  CHECK_THAT(fault, contains("plan.yaml:4:5: error: no door leads to 'bath'; a door `{from: hall, into: bath}` helps"));
+  CHECK(plan_fault(text_of(as_advised(shut_off, fault.substr(0, fault.find('\n'))))).empty());
+}
+
+TEST_CASE("rooms of every kind can be drawn with what is usual, with nothing and with one thing, and be walked through",
+          "[home_plan][seconds]") {
+  int n_drawn = 0, n_refused = 0;
+  for (const char* kind : {"living_room", "kitchen", "bedroom", "study", "bath", "corridor"}) {
+    for (const std::string furniture :
+         {"", ", furniture: []", ", furniture: [{kind: table}]", ", furniture: [{kind: bed, wall: top}]",
+          ", furniture: [{kind: toilet, wall: top}]", ", furniture: [{kind: shelf, wall: top}]"}) {
+      for (const bool has_other : {false, true}) {
+        if (has_other && furniture.find("{") != std::string::npos) continue;
+        const std::string other = "  - {id: other, kind: corridor, x_m: [4, 6], y_m: [0, 4], furniture: []}\n";
+        const std::string text = std::string("pirsim_plan: 1\nrooms:\n  - {id: r, kind: ") + kind +
+                                 ", x_m: [0, 4], y_m: [0, 4]" + furniture + "}\n" + (has_other ? other : "") +
+                                 "doors:\n  - {into: r, wall: left}\n" +
+                                 (has_other ? "  - {from: r, into: other, width_m: 0.8}\n" : "");
+        INFO(text);
+        const SceneSpec scene = home_of(plan_in(text)).scene;
+        if (furniture == ", furniture: []") CHECK((scene.seats.empty() && scene.places.empty()));
+        for (const int n_people : {0, 2}) {
+          ScriptSpec walks = test::script_of({});
+          for (int i = 0; i < n_people; ++i)
+            walks.trials.front().people.push_back(test::person(
+                i == 0 ? "ann" : "ben", {test::act(action::Enter{"entrance"}), test::act(action::Wait{5.0}),
+                                         test::act(action::Leave{"entrance"})}));
+          walks.trials.front().duration_s = 20.0;
+          const RunResult result = run_once(compile(scene, walks), 0);
+          CHECK_FALSE(result.fault);
+        }
+        for (const char* residents : {"[]", "[{id: ann}]"}) {
+          try {
+            static_cast<void>(compile(
+                scene,
+                test::shipped_script("flat_week.yaml", {"sensing.response=zones",
+                                                        std::string("schedule.household.residents=") + residents})));
+            ++n_drawn;
+          } catch (const Error& error) {
+            CHECK(std::string(error.what()).size() > 20);
+            CHECK(error.code() != ErrorCode::internal);
+            ++n_refused;
+          }
+        }
+      }
+    }
+  }
+  CHECK(n_drawn > 5);  // where there is a bed
+  CHECK(n_refused > 10);
+}
+
+TEST_CASE("what a plan's beds, seats and places are called doesn't depend on the order of its rooms", "[home_plan]") {
+  const auto names_in = [](const HomePlanSpec& plan) {
+    const SceneSpec scene = home_of(plan).scene;
+    std::map<std::string, std::string> found;  // name, and the area where it is
+    const auto add = [&](const std::string& id, const Frame& frame) {
+      for (const AreaSpec& area : scene.areas)
+        if (area.outline.contains(floor_point(frame.origin))) found[id] = area.id;
+    };
+    for (const SeatSpec& seat : scene.seats) add(seat.id, seat.world_from_seat);
+    for (const PlaceSpec& place : scene.places) add(place.id, place.world_from_place);
+    return found;
+  };
+  HomePlanSpec plan = read_home_plan(test::data("plans/my_flat.yaml"));
+  const auto names = names_in(plan);
+  CHECK(names.at("bed_bedroom_left") == "bedroom");
+  CHECK(names.at("bed_child") == "child");
+  CHECK(names.at("toilet") == "toilet");
+  CHECK(names.at("sofa_1") == "living_room");
+  std::ranges::reverse(plan.rooms);
+  CHECK(names_in(plan) == names);
 }
 
 TEST_CASE("a plan that nobody can walk through is refused, and names what isn't reached", "[home_plan]") {

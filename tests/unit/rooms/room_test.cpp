@@ -263,6 +263,20 @@ TEST_CASE("ranges that no room fits into are told with what was lacking", "[room
                     contains("recipe.yaml:4:5") && contains("room 2") && contains("300") && contains("no place for"));
 }
 
+TEST_CASE("meeting rooms for two are drawn from 2.8 to 4 m square", "[room]") {
+  for (const double side_m : {2.8, 3.0, 3.4, 4.0}) {
+    RoomSpec spec;
+    spec.kind = RoomKind::meeting;
+    spec.width_m = spec.depth_m = {side_m, side_m};
+    spec.seats = {2, 2};
+    spec.cupboards = spec.partitions = {0, 0};
+    for (int number = 1; number <= 3; ++number) {
+      INFO(side_m << " m, room " << number);
+      CHECK(drawn(spec, number).scene.seats.size() == 2);
+    }
+  }
+}
+
 TEST_CASE("faults of a room's ranges are told with their place and the nearest name", "[room]") {
   Diagnostics faults;
   io::YamlMap map(io::YamlNode::parse("kind: ofice\n"
