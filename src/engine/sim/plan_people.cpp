@@ -38,6 +38,8 @@ std::optional<double> table_height(const SeatSpec& seat, double floor_y, const r
 namespace {
 
 constexpr double step_m = 0.02;  ///< between the places that are tried
+/// How far before a seat's point somebody sits whose thighs don't reach from there to the edge.
+constexpr double farthest_forward_m = 0.3;  // assumed (0.2-0.4): a lumbar cushion is 0.15
 
 /// How far before the seat's point one may stand whose calves touch what one sits on, so that the knees still come
 /// before its edge.
@@ -125,10 +127,11 @@ class Rehearsal {
   void come_into_being(const Vec2& place, const Where& where) {
     start_at(place, {});
     if (person_.spec.changes.role == PersonRole::object) return;
-    const double keep_m = person_.humanoid.half_depth_m(), away_m = grounds_.nearest_solid(place).away_m;
+    const double keep_m = person_.humanoid.half_depth_m();
+    const Grounds::Near solid = grounds_.nearest_solid(place);
     const std::string who = "'" + person_.spec.id + "' can't appear at " + text(place) + ": ";
-    if (away_m <= 0.0) return fail(where, who + inside_of_solid);
-    if (away_m < keep_m) return fail(where, who + too_near(away_m, keep_m));
+    if (solid.away_m <= 0.0) return fail(where, who + within(solid));
+    if (solid.away_m < keep_m) return fail(where, who + too_near(solid, keep_m));
     const auto [known, is_new] = grounds_.open_places.try_emplace({person_.floor->clearance_m(), place.x, place.y});
     if (is_new) known->second = is_open(place);
     if (!known->second) fail(where, who + "nobody can get there, for " + no_clear_path());
@@ -189,16 +192,23 @@ class Rehearsal {
   }
   void stand_at(const PlaceSpec& place, const Where& where) {
     const Vec2 target = floor_point(place.world_from_place.origin);
-    const double keep_m = person_.humanoid.half_depth_m(), away_m = grounds_.nearest_solid(target).away_m;
-    if (away_m >= keep_m || away_m <= 0.0) return go_to(target, name_of(place), where);
-    fail(where, name_of(place) + " can't be stood at" + by_whom() + too_near(away_m, keep_m));
+    const double keep_m = person_.humanoid.half_depth_m();
+    const Grounds::Near solid = grounds_.nearest_solid(target);
+    if (solid.away_m >= keep_m || solid.away_m <= 0.0) return go_to(target, name_of(place), where);
+    fail(where, name_of(place) + " can't be stood at" + by_whom() + too_near(solid, keep_m));
   }
   std::string name_of(const PlaceSpec& place) const { return "place '" + place.id + "' of " + scene_.name; }
   std::string by_whom() const { return " by '" + person_.spec.id + "' from " + text(*at_) + ": "; }
-  static std::string too_near(double away_m, double keep_m) {
-    return "something solid is " + fixed(away_m, 2) + " m away, and nobody stands nearer than " + fixed(keep_m, 2) +
-           " m";
+  [[nodiscard]] std::string name_of(const Grounds::Near& solid) const {
+    const std::string& name = scene_.meshes[solid.mesh].name;
+    if (name.empty()) return "something solid";
+    return name.find('\'') == std::string::npos ? "'" + shortened(name) + "'" : "the " + name;
   }
+  [[nodiscard]] std::string too_near(const Grounds::Near& solid, double keep_m) const {
+    return name_of(solid) + " is " + fixed(solid.away_m, 2) + " m away, and nobody stands nearer than " +
+           fixed(keep_m, 2) + " m";
+  }
+  [[nodiscard]] std::string within(const Grounds::Near& solid) const { return "it is inside of " + name_of(solid); }
 
   void come_in_by(const std::string& entrance) {
     start_at(outside_of(door_of(entrance)), entrance);
@@ -214,13 +224,14 @@ class Rehearsal {
 
   void go_to(const Vec2& target, const std::string& what, const Where& where) {
     if (!at_) return;
-    const bool is_solid = grounds_.nearest_solid(target).away_m <= 0.0;
+    const Grounds::Near solid = grounds_.nearest_solid(target);
+    const bool is_solid = solid.away_m <= 0.0;
     if (!is_solid && can_go_to(target)) return start_at(target, {});
     if (is_shut(behind_)) return at_.reset();
     const bool is_point = what.starts_with("point");
     fail(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(*at_) + ": " +
                     (is_point && !scene_.floor.contains(target) ? "it lies off the floor"
-                     : is_solid                                 ? inside_of_solid
+                     : is_solid                                 ? within(solid)
                                                                 : no_clear_path()));
   }
   std::string no_clear_path() const {
@@ -263,7 +274,7 @@ class Rehearsal {
     const SeatSpec& seat = seat_of(id);
     if (const auto plan = access().plan_of(seat)) {
       person_.seats.emplace(id, *plan);
-      return start_at(plan->stand(seat.world_from_seat), {});
+      return start_at(plan->stand(plan->place.world_from_seat), {});
     }
     if (!is_shut(behind_)) tell_of_seat(seat, where);
     at_.reset();
@@ -294,8 +305,6 @@ class Rehearsal {
   PlaceAccess access() const {
     return {scene_, room_, person_, grounds_, [this](const Vec2& place) { return can_go_to(place); }};
   }
-
-  static constexpr const char* inside_of_solid = "it is inside of something solid";
 
   const SceneSpec& scene_;
   const rt::Room& room_;
@@ -418,6 +427,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
 TriMesh leaf_with_room(const DoorLeaf& leaf) {
   constexpr double room_m = 0.08;  // assumed: so far arms swing beyond what walkers keep clear (0.04-0.08)
   TriMesh mesh = leaf.open_mesh();
+  mesh.name = "open " + mesh.name;
   const Frame frame = leaf.frame_at(leaf.open_step()), leaf_from_world = inverse(frame);
   for (Vec3& corner : mesh.positions) {
     Vec3 local = leaf_from_world * corner;
@@ -617,6 +627,11 @@ std::optional<SeatPlan> PlaceAccess::plan_of(const SeatSpec& seat) const {
       if (find_place_behind(frame, plan, 1.0)) return plan;
     }
   }
+  plan.place.approach_turn = 0.0;
+  for (double forward_m = step_m; forward_m <= farthest_forward_m; forward_m += step_m) {
+    plan.place.world_from_seat.origin = frame.origin + forward_m * frame.forward();
+    if (find_place_before(plan.place.world_from_seat, plan)) return plan;
+  }
   return std::nullopt;
 }
 
@@ -680,11 +695,13 @@ std::string PlaceAccess::why_no_place(const SeatSpec& seat) const {
   for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += fine_m) {
     const Vec2 stand = pelvis + ahead_m * facing;
     if (!person_.can_stand(stand, facing, who.half_depth_m()) || !can_go_to_(stand)) continue;
-    const double too_far_m = ahead_m + fine_m - deepest_m(who);  // to be sure of it, whatever the steps of the search
+    // To be sure of it, whatever the steps of the search.
+    const double too_far_m = ahead_m + fine_m - deepest_m(who) - farthest_forward_m + step_m;
     if (too_far_m <= 0.0 || !is_open_before(seat.world_from_seat, ahead_m)) break;
     return "its point lies " + fixed(ahead_m - who.half_depth_m(), 2) + " m behind the edge of '" +
            scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
-           "', farther than thighs reach, and there is no place behind or beside it either; move the point " +
+           "', farther than anybody sits from an edge, and there is no place behind or beside it either; move the "
+           "point " +
            fixed(std::ceil(too_far_m / fine_m) * fine_m, 2) + " m forward, where one sits nearer to the edge";
   }
   return no_place;

@@ -61,7 +61,8 @@ class PlaceAccess {
       : scene_(scene), room_(room), person_(person), grounds_(grounds), can_go_to_(std::move(can_go_to)) {}
 
   /// As near to the free fall into the seat as the furniture allows. In this order: right before it; before furniture
-  /// that is deeper than a chair, from where the pelvis slides back; up to a metre behind it; up to a metre beside it.
+  /// that is deeper than a chair, from where the pelvis slides back; up to a metre behind it; up to a metre beside it;
+  /// before furniture that is deeper than thighs are long, with the pelvis nearer to the edge than the seat's point.
   [[nodiscard]] std::optional<SeatPlan> plan_of(const SeatSpec& seat) const;
   /// Of a seat of a fit height, over the floor, without a plan.
   [[nodiscard]] std::string why_no_place(const SeatSpec& seat) const;

@@ -250,7 +250,8 @@ class BruteForce {
     const double falls_m = body::fall_back_m(person_, seat());
     const double thigh_m = person_.measures().thigh_m, calf_m = person_.radius_m(body::Part::left_shank);
     const Vec2 ahead = direction_of(room_.heading), right(-ahead.y, ahead.x), pelvis = floor_point(room_.seat);
-    const double farthest_m = thigh_m - calf_m + person_.half_depth_m() - more_m_;
+    constexpr double forward_m = 0.3;  // by which one sits before the point of a seat that is deeper than thighs
+    const double farthest_m = thigh_m - calf_m + person_.half_depth_m() + forward_m - more_m_;
     for (double aside_m = -0.2; aside_m <= 0.2001; aside_m += 0.02) {
       if (more_m_ > 0.0 && std::abs(std::remainder(aside_m, 0.1)) > mm) continue;
       for (double away_m = falls_m; away_m <= farthest_m; away_m += 0.01) {
@@ -305,6 +306,38 @@ double deepest_shin_m(const body::Humanoid& person, const body::Posture& posture
 }
 
 }  // namespace
+
+TEST_CASE("on a sofa that is deeper than thighs are long people sit nearer to its edge, and not in it") {
+  for (const double behind_edge_m : {0.30, 0.45, 0.55, 0.75}) {
+    for (const double stature_m : {1.55, 1.75, 1.86, 1.95}) {
+      INFO(behind_edge_m << " m behind the edge, " << stature_m << " m");
+      Furnished room;
+      room.width_m = 4.0, room.depth_m = 4.0;
+      room.seat = {2.0, 0.53, 3.5};
+      add(room, "sofa", {-1.0, 1.0}, {-behind_edge_m, 0.45}, 0.0, 0.42);
+      add(room, "sofa's back", {-1.0, 1.0}, {0.2, 0.45}, 0.42, 0.85);
+      const ScriptSpec script = script_of(stature_m);
+      const body::Humanoid person(script.trials[0].people[0]);
+      if (behind_edge_m > 0.6) {
+        CHECK_THROWS_AS(compile(scene_of(room), script), Error);
+        continue;
+      }
+      const Model model = compile(scene_of(room), script);
+      State state(model, 0);
+      double deepest_m = -1.0, before_edge_m = -1.0;
+      while (!state.finished()) {
+        step_tick(model, state);
+        const sim::Actor& who = state.run_state().crowd.actors().front();
+        if (!who.present() || who.motion().stage() != body::Stage::seated) continue;
+        deepest_m = std::max(deepest_m, deepest_shin_m(person, who.motion().posture(), room.blocks));
+        before_edge_m = who.motion().position().y - (room.seat.z - behind_edge_m);
+      }
+      const double reach_m = person.measures().thigh_m - person.radius_m(body::Part::left_shank);
+      CHECK(before_edge_m == Approx(std::min(behind_edge_m, reach_m)).margin(0.045));  // two searches by 2 cm
+      CHECK(deepest_m < 0.03);
+    }
+  }
+}
 
 TEST_CASE("200 pieces of furniture to sit on are reached, or refused for a true reason", "[seconds]") {
   int n_reached = 0, n_refused = 0, n_unsure = 0, n_from_front = 0;

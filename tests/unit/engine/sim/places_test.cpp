@@ -164,9 +164,9 @@ TEST_CASE("what can't be done at a place is refused in a sentence", "[places]") 
   CHECK_THAT(refused(low, going(action::Lie{"bed"})), contains("can't be sat on"));
   SceneSpec inside = home();
   inside.places[1].world_from_place.origin = {3.0, 0.0, 0.3};
-  CHECK_THAT(refused(inside, going(action::Stand{"stove"})), contains("inside of something solid"));
+  CHECK_THAT(refused(inside, going(action::Stand{"stove"})), contains("it is inside of 'cupboard'"));
   CHECK_THAT(refused(inside, alone({act(action::Appear{{}, 0.0, "stove"})})), contains("can't appear at (3.00, 0.30)"));
-  CHECK_THAT(refused(home(), alone({act(action::Appear{{3.0, 0.3}})})), contains("inside of something solid"));
+  CHECK_THAT(refused(home(), alone({act(action::Appear{{3.0, 0.3}})})), contains("it is inside of 'cupboard'"));
   SceneSpec near = home();
   near.places[1].world_from_place.origin = {3.85, 0.0, 1.4};
   CHECK_THAT(refused(near, going(action::Stand{"stove"})), contains("nobody stands nearer than"));
