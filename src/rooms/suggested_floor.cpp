@@ -704,16 +704,26 @@ void take_seen_from_above(Cells& cells, const CellGrid& grid, Meshes meshes, dou
   });
 }
 
-CellGrid grid_of(Meshes meshes, double height_m, double side_m) {
-  constexpr double margin_m = 0.5;
+CellGrid grid_of(Meshes meshes, double height_m, double side_m, FloorFrom from) {
+  const double margin_m = from == FloorFrom::surfaces ? 0.5 : 1.5;  // room for doors that are shut in thought
   constexpr std::size_t most_cells = 3'000'000;
   Vec2 lower(std::numeric_limits<double>::max()), upper(std::numeric_limits<double>::lowest());
   each_triangle(meshes, [&](const Corners& t) {
-    if (std::abs(lowest(t) - height_m) > same_floor_m || !is_level(t)) return;
+    const bool is_floor = std::abs(lowest(t) - height_m) <= same_floor_m && is_level(t);
+    const bool is_wall = lowest(t) <= height_m + knee_m && highest(t) >= height_m + knee_m;
+    if (from == FloorFrom::surfaces ? !is_floor : !is_wall) return;
     for (const Vec3& p : t) lower = glm::min(lower, floor_point(p)), upper = glm::max(upper, floor_point(p));
   });
   if (lower.x > upper.x) lower = upper = Vec2(0.0);
   return {lower, upper, margin_m, side_m, most_cells};
+}
+
+/// What lies inside of walls, if gaps as wide as a double door are shut.
+Cells enclosed_by(const CellGrid& grid, const Cells& walls) {
+  const double half_m = 0.5 * widest_door_m;
+  Cells shut = grown(grid, walls, half_m);
+  fill_holes(grid, shut, std::numeric_limits<double>::infinity());
+  return shrunk(grid, std::move(shut), half_m);
 }
 
 /// Cuts a slit from every hole that has other rooms in it to the outside: an outline has no holes.
@@ -758,14 +768,14 @@ FloorPlan part_round(const FloorPlan& plan, int room) {
 }  // namespace
 
 FloorPlan floor_plan_at(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves, double height_m,
-                        double side_m) {
-  return Planner(maps_of(meshes, height_m, side_m), leaves, height_m).run();
+                        double side_m, FloorFrom from) {
+  return Planner(maps_of(meshes, height_m, side_m, from), leaves, height_m).run();
 }
 
 // Level surfaces and walls of a model, on squares.
 
-FloorMaps maps_of(Meshes meshes, double height_m, double side_m) {
-  FloorMaps maps{grid_of(meshes, height_m, side_m), {}, {}, {}, {}, {}, {}};
+FloorMaps maps_of(Meshes meshes, double height_m, double side_m, FloorFrom from) {
+  FloorMaps maps{grid_of(meshes, height_m, side_m, from), {}, {}, {}, {}, {}, {}};
   for (Cells* cells : {&maps.floor, &maps.walls, &maps.sills, &maps.ceiling, &maps.low})
     cells->assign(maps.grid.size(), 0);
   double top_m = height_m;
@@ -776,6 +786,7 @@ FloorMaps maps_of(Meshes meshes, double height_m, double side_m) {
   take_seen_from_above(maps.low, maps.grid, meshes, height_m + same_floor_m, height_m + head_m);
   take_section(maps.walls, maps.grid, meshes, cut_m);
   take_section(maps.sills, maps.grid, meshes, height_m + knee_m);
+  if (from == FloorFrom::walls) maps.floor = enclosed_by(maps.grid, maps.walls);
   Cells floor_and_walls = maps.floor;
   for (std::size_t i = 0; i < floor_and_walls.size(); ++i) floor_and_walls[i] |= maps.walls[i];
   fill_holes(maps.grid, floor_and_walls, filled_hole_m2);

@@ -122,14 +122,16 @@ struct FloorMaps {
   Cells low;      ///< where something is above the floor, too low to stand below
   Cells blocked;  ///< walls, and where there is no floor
 };
-[[nodiscard]] FloorMaps maps_of(std::span<const TriMesh* const> meshes, double height_m, double side_m);
+enum class FloorFrom { surfaces, walls };  ///< walls: all that they enclose, whatever is below
+[[nodiscard]] FloorMaps maps_of(std::span<const TriMesh* const> meshes, double height_m, double side_m,
+                                FloorFrom from = FloorFrom::surfaces);
 
 /// Heights of large level surfaces, from below.
 [[nodiscard]] std::vector<double> level_heights_m(std::span<const TriMesh* const> meshes);
 
 /// meshes: in the room's frame. Of the leaves those count that part two regions, or one from the outside.
 [[nodiscard]] FloorPlan floor_plan_at(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves,
-                                      double height_m, double side_m);
+                                      double height_m, double side_m, FloorFrom from = FloorFrom::surfaces);
 
 /// Outlines of the whole floor, inner walls included.
 [[nodiscard]] std::vector<std::vector<Vec2>> floor_outlines(const FloorPlan& plan);

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/body/ground.hpp"
 #include "files/read/marks_file.hpp"
 #include "files/read/scene_parts.hpp"
 #include "model/core/text.hpp"
@@ -34,8 +35,8 @@ struct Extent {
 
 /// From sizes alone: metres and +Y up, as glTF says, unless these make no building and others do.
 [[nodiscard]] SuggestedFrame frame_of(const io::ModelParts& model);
-/// Turns and scales the model.
-void to_room(io::ModelParts& model, const SuggestedFrame& frame);
+/// Turns, scales and moves the model; a frame without an origin gets one, if the model is far from its own.
+void to_room(io::ModelParts& model, SuggestedFrame& frame);
 
 /// Nodes of the ground that the rooms stand on, of a sky around them, and the like: much larger than all the rest. By
 /// sizes alone, so that a room around a few things may be among them.
@@ -148,14 +149,21 @@ SuggestedFrame frame_of(const io::ModelParts& model) {
   return {"", usual_height_m / size.y, 'y'};
 }
 
-void to_room(io::ModelParts& model, const SuggestedFrame& frame) {
+void to_room(io::ModelParts& model, SuggestedFrame& frame) {
+  constexpr double far_m = 1000.0;  // assumed (300-10,000): coordinates of a map, not of a building
+  Vec3 least(std::numeric_limits<double>::max());
   for (io::ModelPart& part : model.parts) {
     for (Vec3& p : part.mesh.positions) {
       if (frame.up == 'x') p = Vec3(-p.y, p.x, p.z);
       if (frame.up == 'z') p = Vec3(p.x, p.z, -p.y);
       p *= frame.metres;
+      least = glm::min(least, p);
     }
   }
+  if (glm::length(least) < far_m) return;
+  frame.origin_m = glm::round(least);
+  for (io::ModelPart& part : model.parts)
+    for (Vec3& p : part.mesh.positions) p -= frame.origin_m;
 }
 
 bool has_word(std::string_view name, std::span<const std::string_view> words) {
@@ -213,21 +221,40 @@ struct Surface {
   double square_metres = 0.0;
 };
 
-/// Level triangles that look up or down, by height; the highest with a fair part of the largest is sat on.
+/// What of a triangle lies between two heights: its area as a vector, and the middle of that area.
+struct Patch {
+  Vec3 area{0.0}, middle{0.0};
+};
+/// Calls visit(patch) for the parts of a thing's triangles between two heights. Sums over them don't depend on how its
+/// surfaces are cut into triangles.
+void each_patch(const Thing& thing, double from_y, double to_y, const auto& visit) {
+  for (const TriMesh* mesh : thing.meshes) {
+    for (const auto& [a, b, c] : mesh->triangles) {
+      std::vector<Vec3> part{mesh->positions[a], mesh->positions[b], mesh->positions[c]};
+      part = body::clipped(body::clipped(part, from_y, 1.0), to_y, -1.0);
+      for (std::size_t i = 2; i < part.size(); ++i) {
+        const Vec3 &p = part[0], &q = part[i - 1], &r = part[i];
+        visit(Patch{0.5 * glm::cross(q - p, r - p), (p + q + r) / 3.0});
+      }
+    }
+  }
+}
+
+/// Level parts that look up or down, by height; the highest with a fair part of the largest is sat on.
 std::optional<Surface> surface_of(const Thing& thing, double floor_m) {
   constexpr double bin_m = 0.02, least_part = 0.5, level = 0.8;
   std::map<long, Surface> by_height;
-  for (const TriMesh* mesh : thing.meshes) {
-    for (const auto& [a, b, c] : mesh->triangles) {
-      const Vec3 &p = mesh->positions[a], &q = mesh->positions[b], &r = mesh->positions[c];
-      const Vec3 area = 0.5 * glm::cross(q - p, r - p), middle = (p + q + r) / 3.0;
-      const double above_m = middle.y - floor_m;
-      if (std::abs(area.y) < level * glm::length(area) || above_m < lowest_seat_m || above_m > highest_seat_m) continue;
-      Surface& surface = by_height[std::lround(above_m / bin_m)];
-      surface.height_m += std::abs(area.y) * above_m;
-      surface.middle += std::abs(area.y) * floor_point(middle);
-      surface.square_metres += std::abs(area.y);
-    }
+  for (long bin = std::lround(lowest_seat_m / bin_m); bin <= std::lround(highest_seat_m / bin_m); ++bin) {
+    const double middle_m = static_cast<double>(bin) * bin_m;
+    each_patch(thing, floor_m + middle_m - 0.5 * bin_m, floor_m + middle_m + 0.5 * bin_m, [&](const Patch& patch) {
+      const double above_m = patch.middle.y - floor_m, square_metres = std::abs(patch.area.y);
+      if (square_metres < level * glm::length(patch.area) || above_m < lowest_seat_m || above_m > highest_seat_m)
+        return;
+      Surface& surface = by_height[bin];
+      surface.height_m += square_metres * above_m;
+      surface.middle += square_metres * floor_point(patch.middle);
+      surface.square_metres += square_metres;
+    });
   }
   double most = 0.0;
   for (const auto& [height, surface] : by_height) most = std::max(most, surface.square_metres);
@@ -245,16 +272,11 @@ std::optional<Surface> surface_of(const Thing& thing, double floor_m) {
 std::optional<Vec2> facing_of(const Thing& thing, const Surface& surface, double floor_m) {
   Vec2 sum(0.0);
   double whole = 0.0;
-  for (const TriMesh* mesh : thing.meshes) {
-    for (const auto& [a, b, c] : mesh->triangles) {
-      const Vec3 &p = mesh->positions[a], &q = mesh->positions[b], &r = mesh->positions[c];
-      const Vec3 middle = (p + q + r) / 3.0;
-      const double area = 0.5 * glm::length(glm::cross(q - p, r - p));
-      if (middle.y - floor_m < surface.height_m + back_above_m) continue;
-      sum += area * (floor_point(middle) - floor_point(thing.extent.middle()));
-      whole += area;
-    }
-  }
+  each_patch(thing, floor_m + surface.height_m + back_above_m, thing.extent.most.y, [&](const Patch& patch) {
+    const double square_metres = glm::length(patch.area);
+    sum += square_metres * (floor_point(patch.middle) - floor_point(thing.extent.middle()));
+    whole += square_metres;
+  });
   const double aside_m = whole > 0.0 ? glm::length(sum) / whole : 0.0;
   constexpr double least_aside_m = 0.06;
   if (aside_m < least_aside_m) return std::nullopt;
@@ -547,6 +569,7 @@ struct Found {
   std::vector<Thing> doors, spaces;
   std::optional<ChosenFloor> floor;
   FloorPlan plan{};
+  bool is_between_walls = false;  ///< no surface is one: the floor is what walls enclose
 };
 
 /// Walls and furniture that stand on the floor.
@@ -559,10 +582,25 @@ std::size_t n_standing(const Found& found) {
   }));
 }
 
+/// Where what is as high as a wall begins: at the wanted height, or else the lowest; or nothing.
+std::optional<double> foot_of_walls(std::span<const TriMesh* const> meshes, std::optional<double> wanted_m) {
+  constexpr double least_height_m = 1.8, near_m = 0.2;  // assumed (1.7-2: higher than furniture; 0.1-0.3)
+  std::optional<double> foot_m;
+  for (const TriMesh* mesh : meshes) {
+    const Extent extent = extent_of({&mesh, 1});
+    if (extent.size().y < least_height_m) continue;
+    if (wanted_m && std::abs(*wanted_m - extent.least.y) <= near_m) return wanted_m;
+    if (!wanted_m) foot_m = std::min(foot_m.value_or(extent.least.y), extent.least.y);
+  }
+  return foot_m;
+}
+
+/// floor_m: before the frame's origin is taken away.
 Found look_for_floor(io::ModelParts model, std::optional<double> floor_m) {
   Found found{std::move(model), {}, {}, {}, {}, {}};
   found.frame = frame_of(found.model);
   to_room(found.model, found.frame);
+  if (floor_m) *floor_m -= found.frame.origin_m.y;
   found.doors = doors_of(found.model);
   found.spaces = things_named(found.model, space_words, [](const Extent&) { return true; });
   std::vector<Leaf> leaves;
@@ -571,21 +609,30 @@ Found look_for_floor(io::ModelParts model, std::optional<double> floor_m) {
   found.floor = floor_m ? ChosenFloor{*floor_m, {}} : choose_floor(meshes, leaves);
   constexpr double fine_m = 0.05;
   if (found.floor) found.plan = floor_plan_at(meshes, leaves, found.floor->height_m, fine_m);
+  if (found.plan.n_rooms > 0) return found;
+  const std::optional<double> foot_m = foot_of_walls(meshes, floor_m);
+  if (!foot_m) return found;
+  found.floor = ChosenFloor{*foot_m, {}};
+  found.plan = floor_plan_at(meshes, leaves, *foot_m, fine_m, FloorFrom::walls);
+  found.is_between_walls = true;
   return found;
 }
 
 /// Is a floor that was found without the surroundings the better one? They may have been the room.
 bool is_better(const Found& without, const Found& with) {
   if (without.plan.n_rooms == 0 || with.plan.n_rooms == 0) return without.plan.n_rooms > 0;
+  if (without.is_between_walls != with.is_between_walls) return with.is_between_walls;
   if (without.plan.is_bare != with.plan.is_bare) return with.plan.is_bare;
   const std::size_t own = n_standing(without), other = n_standing(with);
   return own > other || (own == other && !without.plan.is_bare);
 }
 
-/// Why there is none, and what may be in the way.
-std::string no_floor(const Found& found, std::optional<double> floor_m) {
-  const std::string what = floor_m ? "at a height of " + fixed(*floor_m, 2) + " m nothing looks like a floor"
-                                   : "nothing in the model looks like a floor";
+/// Why there is none, and what helps: to leave out what is widest, if a floor is found then, or to draw one.
+std::string no_floor(const Found& found, const SuggestionHints& hints) {
+  const std::string what =
+      (hints.floor_m ? "at a height of " + fixed(*hints.floor_m, 2) + " m nothing looks like a floor"
+                     : std::string("nothing in the model looks like a floor")) +
+      ": level, with 2 m2 at least to stand on, or enclosed by walls. ";
   const io::ModelPart* largest = nullptr;
   double most_m2 = 0.0;
   for (const io::ModelPart& part : found.model.parts) {
@@ -595,13 +642,20 @@ std::string no_floor(const Found& found, std::optional<double> floor_m) {
     most_m2 = size.x * size.z;
     largest = &part;
   }
-  const std::string name =
-      largest == nullptr ? "" : shortened(found.model.nodes[static_cast<std::size_t>(largest->node)].name);
-  return what + ": level, with 2 m2 at least to stand on" +
-         (largest == nullptr ? ""
-                             : ". The widest thing is '" + name + "', " + fixed(most_m2, 0) +
-                                   " m2 seen from above: if it is in the way, leave it out (--ignore '" + name + "')") +
-         (floor_m ? "" : ", or tell the floor's height (--floor)");
+  if (largest != nullptr) {
+    io::ModelParts rest = found.model;  // in the room's frame already
+    leave_out(rest, {largest->node});
+    std::optional<double> floor_m = hints.floor_m;
+    if (floor_m) *floor_m -= found.frame.origin_m.y;
+    if (!rest.parts.empty() && look_for_floor(std::move(rest), floor_m).plan.n_rooms > 0) {
+      const std::string name = shortened(found.model.nodes[static_cast<std::size_t>(largest->node)].name);
+      return what + "The widest thing is '" + name + "', " + fixed(most_m2, 0) +
+             " m2 seen from above: it is in the way, leave it out (--ignore '" + name + "')";
+    }
+  }
+  return what +
+         "Draw the floor yourself, in a file for --marks: `pirsim_marks: 1` and `floors: [{height_m: 0, polygon_xz_m: "
+         "[[x, z], [x, z], [x, z]]}]`, with its corners in metres";
 }
 
 /// A name that an id can be.
@@ -677,13 +731,14 @@ Suggestion suggest(io::ModelParts model, const SuggestionHints& hints, const std
       for (const int node : around) result.around.push_back(model.nodes[static_cast<std::size_t>(node)].name);
     }
   }
-  if (found.plan.n_rooms == 0) throw Error(ErrorCode::input, {name}, no_floor(found, hints.floor_m));
+  if (found.plan.n_rooms == 0) throw Error(ErrorCode::input, {name}, no_floor(found, hints));
   const FloorPlan& plan = found.plan;
   result.frame = found.frame;
   result.floor_m = found.floor->height_m;
   result.other_floors_m = found.floor->others_m;
   result.floors = floor_outlines(plan);
   result.is_open = plan.is_open;
+  result.is_between_walls = found.is_between_walls;
   std::vector<Thing> shutting;
   for (const FloorGap& gap : plan.gaps) {
     if (gap.leaf >= 0) shutting.push_back(found.doors[static_cast<std::size_t>(gap.leaf)]);
@@ -736,13 +791,37 @@ class SuggestionWriter {
     entrances();
     seats();
     ignored();
-    out_ << "\n# Sensors aren't proposed. One in a corner, 2.3 m up, that looks into the room and 20 degrees down:\n"
-            "# sensors:\n# - {id: PIR1, model: EKMC1604111, position_m: [0, "
-         << centimetres(given_.floor_m + 2.3) << ", 0], yaw_deg: 225, tilt_deg: 20}\n";
+    sensor();
     return out_.str();
   }
 
  private:
+  /// In the corner from which one looks farthest along the middle between its walls.
+  void sensor() {
+    constexpr double off_walls_m = 0.1, high_m = 2.3;
+    Vec2 best(0.0), towards(0.0, -1.0);
+    double farthest_m = 0.0;
+    for (const SuggestedArea& area : given_.areas) {
+      const std::vector<Vec2>& corners = area.outline;
+      const FloorArea inside({corners}, 0.0);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec2& at = corners[i];
+        const Vec2 before = glm::normalize(corners[(i + corners.size() - 1) % corners.size()] - at);
+        const Vec2 after = glm::normalize(corners[(i + 1) % corners.size()] - at);
+        if (glm::length(before + after) < 0.5) continue;  // nearly straight
+        const Vec2 middle = glm::normalize(before + after);
+        double seen_m = 0.0;
+        while (inside.contains(at + (seen_m + off_walls_m) * middle)) seen_m += off_walls_m;
+        if (seen_m > farthest_m) farthest_m = seen_m, best = at + off_walls_m * middle, towards = middle;
+      }
+    }
+    out_ << "\n# Sensors aren't proposed. One in a corner, " << fixed(high_m, 1)
+         << " m up, that looks into the room and 20 degrees down:\n"
+            "# sensors:\n# - {id: PIR1, model: EKMC1604111, position_m: "
+         << room_point({best.x, given_.floor_m + high_m, best.y})
+         << ", yaw_deg: " << fixed(degrees(heading_of(towards)), 0) << ", tilt_deg: 20}\n";
+  }
+
   void frame() {
     const SuggestedFrame& frame = given_.frame;
     if (frame.unit.empty()) {
@@ -752,16 +831,22 @@ class SuggestionWriter {
       out_ << "unit: " << frame.unit << (frame.unit == "m" ? "\n" : "  # by the model's size\n");
     }
     out_ << "up: " << frame.up << (frame.up == 'y' ? "\n" : "  # by the model's size: along +Y it is no storey\n");
+    if (frame.origin_m != Vec3(0.0))
+      out_ << "origin_m: [" << fixed(frame.origin_m.x, 0) << ", " << fixed(frame.origin_m.y, 0) << ", "
+           << fixed(frame.origin_m.z, 0) << "]  # the model has the coordinates of a map\n";
   }
 
   void floors() {
-    out_ << "\nfloors:\n";
+    out_ << (given_.is_between_walls ? "\n# No surface is a floor: this is what the walls enclose, at their feet.\n"
+                                     : "\n")
+         << "floors:\n";
     for (const auto& outline : given_.floors) {
       out_ << "- {height_m: " << centimetres(given_.floor_m) << ", polygon_xz_m: " << polygon(outline) << "}\n";
     }
     if (given_.other_floors_m.empty()) return;
     std::vector<std::string> heights;
-    for (const double height_m : given_.other_floors_m) heights.push_back(centimetres(height_m));
+    for (const double height_m : given_.other_floors_m)
+      heights.push_back(centimetres(height_m + given_.frame.origin_m.y));
     out_ << "# Other floors were found at " << joined(heights, ", ") << " m; `--floor " << heights.front()
          << "` proposes marks for that one.\n";
   }

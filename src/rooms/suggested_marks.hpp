@@ -15,6 +15,7 @@ struct SuggestedFrame {
   std::string unit = "m";  ///< a word of marks files; empty: a scale that is only guessed
   double metres = 1.0;     ///< of a unit
   char up = 'y';           ///< which of the model's axes
+  Vec3 origin_m{0.0};      ///< after unit and axis; not 0 for a model in the coordinates of a map
 };
 
 struct SuggestedArea {
@@ -50,12 +51,13 @@ struct Suggestion {
   std::vector<std::string> around;       ///< nodes of the ground and the sky
   std::vector<std::string> ignored;      ///< patterns, as given
   std::vector<std::string> beds;         ///< nodes
+  bool is_between_walls = false;         ///< no surface is a floor: it is what the walls enclose
   bool is_open = false;                  ///< no way in was found, and a side without walls is taken for one
 };
 
 /// What the user knows better.
 struct SuggestionHints {
-  std::optional<double> floor_m{};     ///< its height after the frame; none: the lowest of the large ones
+  std::optional<double> floor_m{};     ///< its height after unit and axis; none: the lowest of the large ones
   std::vector<std::string> ignored{};  ///< patterns of nodes, as of a marks file
 };
 

@@ -85,6 +85,47 @@ class Marks(MarksCase):
                                "-o", "no", code=3)[1]
         self.assertIn("bad.yaml:3:31: error: scenes: unknown key 'mark' (did you mean 'marks'?)", told)
 
+    def test_a_model_in_the_coordinates_of_a_map_is_the_model_at_the_origin_byte_for_byte(self):
+        there = [451234.5, 120.0, -5412345.7]
+        site = json.loads(model(FLAT))
+        site["nodes"].append({"name": "site", "translation": there, "children": site["scenes"][0]["nodes"]})
+        site["nodes"].append({"name": "root", "children": [len(site["nodes"]) - 1]})
+        site["scenes"][0]["nodes"] = [len(site["nodes"]) - 1]
+        far = self.write("far.gltf", json.dumps(site))
+        near_marks = self.write("near.yaml", MARKS)
+        far_marks = self.write("far.yaml", MARKS + f"origin_m: {there}\n")
+        rows = [self.run_pirsim("--scene", scene, "--marks", marks, "--script", self.walk, "-q")[0]
+                for scene, marks in ((self.flat, near_marks), (far, far_marks))]
+        self.assertEqual(rows[0], rows[1])
+        # The message's origin, and the proposal's, bring it here, too.
+        told = self.run_pirsim("check", "--scene", far, code=3)[1]
+        self.assertIn("node 'Slab': it lies more than 100000 m from the origin", told)
+        self.assertNotIn("'root'", told)
+        advised = re.search(r"`(origin_m: .*?)`", told).group(1)
+        proposed = re.search(r"^origin_m: .*?\]", self.run_pirsim("check", "--scene", far, "--suggest")[0], re.M).group()
+        for origin in (advised, proposed):
+            sensor = "sensors: [{id: P, model: EKMC1604111, position_m: [1, 2, 1]}]\nfloors: [{polygon_xz_m: [[0, 0], [5, 0], [5, 6], [0, 6]]}]\n"
+            self.run_pirsim("check", "--scene", far, "--marks", self.write("o.yaml", f"pirsim_marks: 1\n{origin}\n{sensor}"))
+
+    def test_a_model_without_a_floor_takes_the_one_that_its_message_shows(self):
+        heap = self.write("heap.gltf", model([("post", (0, 0, 0), (0.2, 2.5, 0.2)), ("other", (3, 0, 3), (3.2, 2.5, 3.2))]))
+        told = self.run_pirsim("check", "--scene", heap, "--suggest", code=3)[1]
+        self.assertNotIn("--ignore", told)
+        head, floors = re.search(r"`(pirsim_marks: 1)` and `(floors: .*?)`", told).groups()
+        for corner in ("[0, 0]", "[4, 0]", "[4, 4]"):
+            floors = floors.replace("[x, z]", corner, 1)
+        self.run_pirsim("check", "--scene", heap, "--marks", self.write("drawn.yaml", f"{head}\n{floors}\n"))
+
+    def test_the_proposed_sensor_sees_somebody(self):
+        for offset in (0, 30):
+            moved = [(name, *(tuple(v + d for v, d in zip(p, (offset, 0, -offset))) for p in ends)) for name, *ends in FLAT]
+            scene = self.write("moved.gltf", model(moved))
+            marks = self.run_pirsim("check", "--scene", scene, "--suggest")[0]
+            head, tail = marks.split("# sensors:\n# - ")
+            told = "".join(self.run_pirsim("check", "--scene", scene, "--marks", self.write("m.yaml", f"{head}sensors:\n- {tail}")))
+            self.assertIn("PIR1", told)
+            self.assertNotIn("NOBODY", told)
+
     def test_files_made_to_break_are_refused_by_name(self):
         for name, text, message in (
                 ("empty", "", "'pirsim_marks' is missing"), ("list", "- a\n", "marks: expected a map"), ("word", "marks", "marks: expected a map"),

@@ -23,20 +23,6 @@ constexpr double same_line_m = 1e-9;  ///< what rounding makes of points on one 
 
 double cross(const Vec2& a, const Vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
 
-/// The part of a convex polygon where side * (y - height) >= 0. Ref: [SutherlandHodgman1974].
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double height, double side) {
-  std::vector<Vec3> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3& a = polygon[i];
-    const Vec3& b = polygon[(i + 1) % polygon.size()];
-    const double da = side * (a.y - height);
-    const double db = side * (b.y - height);
-    if (da >= 0.0) kept.push_back(a);
-    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) kept.push_back(glm::mix(a, b, da / (da - db)));
-  }
-  return kept;
-}
-
 /// Leaves the two ends of a line.
 void make_line(Footprint& footprint, const Vec2& along) {
   const auto before = [&](const Vec2& a, const Vec2& b) { return glm::dot(a, along) < glm::dot(b, along); };
@@ -264,6 +250,19 @@ double disc_distance(const Vec2& a, const Vec2& b, const Disc& disc) noexcept {
 }
 
 }  // namespace
+
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double height, double side) {
+  std::vector<Vec3> kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3& b = polygon[(i + 1) % polygon.size()];
+    const double da = side * (a.y - height);
+    const double db = side * (b.y - height);
+    if (da >= 0.0) kept.push_back(a);
+    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) kept.push_back(glm::mix(a, b, da / (da - db)));
+  }
+  return kept;
+}
 
 std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m) {
   constexpr double touching_m = 1e-3;  // what rounding makes of a lintel that begins where the heights end

@@ -33,6 +33,9 @@ struct Footprint {
   Vec2 upper{0.0};
 };
 
+/// The part of a convex polygon where side * (y - height) >= 0. Ref: [SutherlandHodgman1974].
+[[nodiscard]] std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, double height, double side);
+
 /// The footprints of all triangles that reach into heights [lower_m, upper_m] (world y); what only touches upper_m from
 /// above doesn't: a lintel at 2.00 m is a usual one. Lines that overlap the line
 /// before them, of the same mesh, are one with it.

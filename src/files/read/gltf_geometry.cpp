@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "files/read/reader_parts.hpp"
+#include "model/core/text.hpp"
 #include "model/geom/shapes.hpp"
 #include "model/schema/checks.hpp"
 #include "model/schema/fields.hpp"
@@ -199,10 +201,11 @@ std::string node_pointer(int node) { return "/nodes/" + std::to_string(node); }
 
 class Placement {
  public:
-  Placement(const GltfDocument& document, Diagnostics& remarks)
-      : document_(document), remarks_(remarks), seen_(document.model.nodes.size(), false) {}
+  Placement(const GltfDocument& document, Diagnostics& remarks, Reach reach)
+      : document_(document), remarks_(remarks), reach_(reach), seen_(document.model.nodes.size(), false) {}
 
   PlacedNodes run(const glm::dmat4& world_from_file) {
+    origin_ = -Vec3(world_from_file[3]);
     const tinygltf::Model& model = document_.model;
     if (model.scenes.empty()) {
       remarks_.error(document_.text.where(""), "the file has no 'scenes'");
@@ -272,6 +275,12 @@ class Placement {
     push(node.children, world_from_node, node_pointer(pending.node) + "/children");
   }
 
+  /// Has it a mesh or a mark?
+  [[nodiscard]] bool is_something(int node) const {
+    const nlohmann::json& given = document_.text.root()["nodes"][static_cast<std::size_t>(node)];
+    const auto extras = given.find("extras");
+    return given.contains("mesh") || (extras != given.end() && extras->is_object() && extras->contains("pirsim"));
+  }
   [[nodiscard]] bool is_hidden(int node) const {
     const nlohmann::json& given = document_.text.root()["nodes"][static_cast<std::size_t>(node)];
     const auto extensions = given.find("extensions");
@@ -317,9 +326,11 @@ class Placement {
     if (!finite(m[0]) || !finite(m[1]) || !finite(m[2]) || !finite(m[3])) {
       return fault(node, "", "its transform is not finite");
     }
-    if (!is_in_world(Vec3(m[3]))) {
+    if (reach_ == Reach::world && is_something(node) && !is_in_world(Vec3(m[3]))) {
       const auto limit_m = static_cast<int>(accepted::in_world_m.max);
-      return fault(node, "/translation", "it lies more than " + std::to_string(limit_m) + " m from the origin");
+      return fault(
+          node, "/translation",
+          "it lies more than " + std::to_string(limit_m) + " m from the origin" + brought_here(origin_ + Vec3(m[3])));
     }
     // Volume of the unit axes, so that small models (in millimetres, say) are no worse than large ones.
     const Vec3 x(m[0]), y(m[1]), z(m[2]);
@@ -342,6 +353,8 @@ class Placement {
 
   const GltfDocument& document_;
   Diagnostics& remarks_;
+  Reach reach_;
+  Vec3 origin_{0.0};  ///< what is taken away from all places
   std::vector<bool> seen_;
   std::vector<Pending> pending_;
   PlacedNodes placed_;
@@ -573,8 +586,15 @@ bool AccessorReader::fault(const std::string& pointer, const std::string& messag
   return false;
 }
 
-PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks, const glm::dmat4& world_from_file) {
-  return Placement(document, remarks).run(world_from_file);
+std::string brought_here(const Vec3& place) {
+  const Vec3 origin = glm::floor(place);
+  return ": a marks file (--marks) with `origin_m: [" + fixed(origin.x, 0) + ", " + fixed(origin.y, 0) + ", " +
+         fixed(origin.z, 0) + "]` brings it here";
+}
+
+PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks, const glm::dmat4& world_from_file,
+                        Reach reach) {
+  return Placement(document, remarks, reach).run(world_from_file);
 }
 
 Frame rigid_frame(const glm::dmat4& world_from_node) {

@@ -92,10 +92,14 @@ struct PlacedNodes {
   std::vector<HiddenNode> hidden;  ///< the topmost of each hidden part
 };
 
+/// ": a marks file ... brings it here", of a place before any origin is taken away.
+[[nodiscard]] std::string brought_here(const Vec3& place);
+
+enum class Reach { world, anywhere };  ///< how far from the origin a node may be that has a mesh or a mark
 /// Nodes of the default scene. Faults: no scene, a node below itself or below two parents, transforms that are
-/// singular, not finite or out of the world. world_from_file: what the whole file is turned, scaled and moved by.
+/// singular, not finite or out of reach. world_from_file: what the whole file is turned, scaled and moved by.
 [[nodiscard]] PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks,
-                                      const glm::dmat4& world_from_file = glm::dmat4(1.0));
+                                      const glm::dmat4& world_from_file = glm::dmat4(1.0), Reach reach = Reach::world);
 
 /// The rigid part of a transform: looks along its -Z exactly, +Y as near as it can be; scale and mirroring drop out.
 [[nodiscard]] Frame rigid_frame(const glm::dmat4& world_from_node);

@@ -80,7 +80,7 @@ GivenMark given_mark(const YamlNode& node, std::string label) {
 // From the model to the room.
 
 constexpr NumberRange scale_range{.min = 1e-6, .max = 1e6};
-constexpr NumberRange origin_range = accepted::in_world_m;
+constexpr NumberRange origin_range;  // coordinates of a map are millions of metres
 
 double read_scale(YamlMap& map) {
   const double metres =
@@ -346,7 +346,7 @@ ModelParts read_model_parts(const std::filesystem::path& file) {
   Diagnostics remarks;
   GroupedWarnings warnings;
   const detail::GltfDocument document = detail::load_gltf(file, remarks);
-  const detail::PlacedNodes placed = detail::place_nodes(document, remarks);
+  const detail::PlacedNodes placed = detail::place_nodes(document, remarks, glm::dmat4(1.0), detail::Reach::anywhere);
   remarks.throw_if_errors();
   detail::GeometryBudget budget;
   ModelParts model;

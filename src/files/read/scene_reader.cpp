@@ -219,8 +219,10 @@ class SceneBuilder {
     if (!is_first && !budget_.take(whole.positions.size() + whole.triangles.size()))
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
     const TriMesh world = transformed(whole, placed.world_from_node, node_name(document_.model, placed.node));
-    if (!std::ranges::all_of(world.positions, is_in_world)) {
-      return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
+    if (const auto far = std::ranges::find_if_not(world.positions, is_in_world); far != world.positions.end()) {
+      const Vec3 origin = marks_file_ ? -Vec3(marks_file_->room_from_model[3]) : Vec3(0.0);
+      return node_error(placed.node, "/mesh",
+                        "its mesh reaches more than 100 km from the origin" + brought_here(origin + *far));
     }
     CleanMesh cleaned = clean(world);
     if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh, warnings);

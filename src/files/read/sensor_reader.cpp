@@ -274,12 +274,22 @@ ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& rang
   return cluster;
 }
 
+constexpr const char* round_its_axis =
+    "; the 360 degrees of a ceiling detector go round its axis: 12 m in diameter at 2.5 m are `wide_deg: 135`, from "
+    "edge "
+    "to edge";
+
 std::vector<ClusterSpec> read_dome(YamlMap& sensor, double plane_m, double range_m) {
   DomeSpec dome;
   const YamlNode node = *sensor.child("dome");
-  YamlMap map(node, sensor.faults(), "dome");
+  Diagnostics found;
+  YamlMap map(node, found, "dome");
   read_fields(map, dome);
   map.finish();
+  for (const Issue& issue : found.issues()) {
+    const auto is_at = [&](const char* key) { return map.has(key) && map.where(key) == issue.where; };
+    sensor.faults().error(issue.where, issue.message + (is_at("wide_deg") || is_at("tall_deg") ? round_its_axis : ""));
+  }
   if (sensor.faults().has_errors()) return {};
   std::vector<ClusterSpec> clusters = clusters_of(dome, plane_m, range_m);
   for (const ClusterSpec& cluster : clusters) check_corners(cluster, "dome", node.where(), sensor.faults());

@@ -204,6 +204,25 @@ std::string dome_file(const std::string& dome) {
 
 }  // namespace
 
+TEST_CASE("who gives a ceiling detector's 360 degrees is shown the field of view across it, which is right",
+          "[sensor]") {
+  const auto told = [](const char* key) {
+    try {
+      static_cast<void>(model_of(dome_file(std::string(key) + ": 360")));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const char* key : {"wide_deg", "tall_deg"}) {
+    CHECK_THAT(told(key),
+               contains("360 degrees of a ceiling detector go round its axis") && contains("`wide_deg: 135`"));
+  }
+  CHECK(degrees(2.0 * std::atan(6.0 / 2.5)) == Approx(135.0).margin(0.5));  // 12 m in diameter at 2.5 m
+  CHECK(told("focal_mm").find("360 degrees") == std::string::npos);
+  CHECK_NOTHROW(model_of(dome_file("wide_deg: 135")));
+}
+
 TEST_CASE("a single lens of a dome throws the element's strips straight ahead, mirrored", "[sensor]") {
   const auto model = model_of(dome_file("lenses: 1, wide_deg: 90, focal_mm: 10"));
   REQUIRE(model.clusters.size() == 1);
