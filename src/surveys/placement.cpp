@@ -378,8 +378,8 @@ PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, Senso
 
 WorkReport watch_workers(const CoverageStudy& study, SeatsTried tried, unsigned threads) {
   const SurveyBase& survey = study.survey();
-  return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer, survey.seed()},
-                       usual_worker(), threads, tried);
+  return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer}, usual_worker(), threads,
+                       tried);
 }
 
 SeatsAtWork seats_at_work(const SceneSpec& scene, const PlacementSpec& spec, const SensorSetSpec& set,

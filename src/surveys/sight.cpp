@@ -321,7 +321,7 @@ void note_blind(const SensorSight& sight, const std::string& scene, GroupedWarni
 }  // namespace
 
 WatchedRoom room_of(const sim::CompiledStudy& study) {
-  return {study.scene(), study.sensing(), study.array(), study.tracer(), study.seed()};
+  return {study.scene(), study.sensing(), study.array(), study.tracer()};
 }
 
 Worker usual_worker() {
@@ -346,7 +346,8 @@ Worker worker_of(std::span<const sim::TrialModel> trials) {
 }
 
 WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads, SeatsTried tried) {
-  const body::Humanoid humanoid(worker.person);
+  const Worker usual = usual_worker();  // who rests there, and so the same in every survey
+  const body::Humanoid humanoid(worker.person), usual_humanoid(usual.person);
   const double floor_y = room.scene.floor.height_m(), tick_s = room.array.tick_s();
   const std::size_t n_seats = room.scene.seats.size(), n_all = n_seats + room.scene.places.size();
   WorkReport report;
@@ -360,7 +361,7 @@ WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned
     const std::size_t which = i * n_all / n;
     if (which >= n_seats) {
       const PlaceSpec& place = room.scene.places[which - n_seats];
-      std::optional<body::Motion> motion = settled(humanoid, place, floor_y, tick_s);
+      std::optional<body::Motion> motion = settled(usual_humanoid, place, floor_y, tick_s);
       if (!motion) continue;
       const auto activity = place.uses.empty() ? std::nullopt : activity_for(place.uses.front());
       spots.push_back({Spot::Doing::other, place.id, std::move(*motion), activity});
@@ -368,14 +369,19 @@ WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned
     }
     const SeatSpec& seat = room.scene.seats[which];
     const body::SeatPlace place{seat.world_from_seat, floor_y, sim::table_height(seat, floor_y, room.array.room())};
-    if (body::unfit_height(humanoid, place)) continue;
     const bool is_for_work = seat.uses.empty() || std::ranges::find(seat.uses, "work") != seat.uses.end();
-    spots.push_back({is_for_work ? Spot::Doing::work : Spot::Doing::other, seat.id, seated(humanoid, place, tick_s),
+    const body::Humanoid& who = is_for_work ? humanoid : usual_humanoid;
+    if (body::unfit_height(who, place)) continue;
+    spots.push_back({is_for_work ? Spot::Doing::work : Spot::Doing::other, seat.id, seated(who, place, tick_s),
                      is_for_work ? std::nullopt : activity_for(seat.uses.front())});
   }
   for (const Spot& spot : spots) report.seats.push_back(spot.id);
   ordered_parallel<std::vector<WorkNotice>>(
-      spots.size(), threads, [&](std::size_t i) { return watch(room, worker, report.seconds, humanoid, spots[i]); },
+      spots.size(), threads,
+      [&](std::size_t i) {
+        return spots[i].doing == Spot::Doing::work ? watch(room, worker, report.seconds, humanoid, spots[i])
+                                                   : watch(room, usual, natural_work_s, usual_humanoid, spots[i]);
+      },
       [&](std::vector<WorkNotice>& of_seat) {
         report.notices.insert(report.notices.end(), of_seat.begin(), of_seat.end());
       });

@@ -30,7 +30,7 @@ struct WatchedRoom {
   const SensingInForce& sensing;
   const sim::SensorArray& array;
   TracerKind tracer = fastest_tracer;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of sitters and sensors' noise: one for all, so that surveys agree on what is deaf
 };
 [[nodiscard]] WatchedRoom room_of(const sim::CompiledStudy& study);
 

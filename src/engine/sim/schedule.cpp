@@ -56,7 +56,8 @@ constexpr double shortest_pastime_s = 5.0 * minute_s;
 constexpr double work_between_breaks_s = 90.0 * minute_s, break_s = 10.0 * minute_s;  // 60 to 120, 5 to 15
 
 // On foot. Derivation and ranges: docs/physics/homes.md.
-constexpr double sits_s = 12.0 * minute_s, sits_at_work_s = 18.0 * minute_s;  // means
+constexpr double sits_s = 12.0 * minute_s, sits_at_work_s = 18.0 * minute_s,
+                 sits_at_meals_s = 90.0 * minute_s;  // means
 constexpr double sits_log_sd = 1.0, between_people_log_sd = 0.3;
 constexpr double shortest_s = 5.0;  // of a stop
 
@@ -610,7 +611,9 @@ class HomeDayPlan {
   void sit_and_get_up(std::size_t person, const HomeStay& stay, const Spot& seat) {
     constexpr double way_s = 10.0;  // about, to a stop
     const char* phase = manner_of(stay.activity).phase;
-    const double mean_s = calm_[person] * (stay.activity == HomeActivity::work ? sits_at_work_s : sits_s);
+    const double mean_s = calm_[person] * (stay.activity == HomeActivity::work  ? sits_at_work_s
+                                           : stay.activity == HomeActivity::eat ? sits_at_meals_s
+                                                                                : sits_s);
     Stream& stream = errands_[person];
     for (double now = stay.from_s;;) {
       const double up_s = now + about(stream, mean_s, sits_log_sd);

@@ -8,9 +8,11 @@
 #include "engine/rt/tracer.hpp"
 #include "engine/sim/observer.hpp"
 #include "engine/sim/plan_people.hpp"
+#include "pirsim/look.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 #include "support/zone_bytes.hpp"
+#include "surveys/placement.hpp"
 
 using namespace pirsim;
 using namespace pirsim::studies;
@@ -195,6 +197,31 @@ TEST_CASE("the script's first desk worker is watched, or else somebody of natura
   const Worker other = worker_of({});
   CHECK(other.person.style == MotionStyle::natural);
   CHECK(other.person.id.empty());
+}
+
+TEST_CASE("whatever the script's seed and its worker, a sofa is as deaf for check as for placements", "[sitters]") {
+  SceneSpec scene = den();
+  for (SeatSpec& seat : scene.seats) seat.uses = {"tv"};
+  const auto notices_with = [&](std::uint64_t seed, MotionStyle style) {
+    ScriptSpec script = reads_for(60.0, Response::analog);
+    script.seed = seed;
+    PersonSpec& reader = script.trials.front().people.front();
+    if (style == MotionStyle::choreographed) std::get<action::Work>(reader.actions[2].what).activity.reset();
+    reader.style = style;
+    reader.stature_m = style == MotionStyle::natural ? 1.86 : 1.6;
+    return check_study(compile(scene, script)).work.notices;
+  };
+  const auto same = [](const std::vector<WorkNotice>& a, const std::vector<WorkNotice>& b) {
+    return std::ranges::equal(a, b, {}, &WorkNotice::seconds, &WorkNotice::seconds);
+  };
+  PlacementSpec placements;
+  placements.by = PlacementAim::seats;
+  const SeatsAtWork placed = seats_at_work(scene, placements, {"as built", scene.sensors}, 1);
+  const auto by_check = notices_with(1, MotionStyle::natural);
+  CHECK(same(by_check, notices_with(7, MotionStyle::natural)));
+  CHECK(same(by_check, notices_with(7, MotionStyle::choreographed)));
+  for (std::size_t i = 0; i < scene.seats.size(); ++i)
+    CHECK((by_check[i].seconds > 0) == (std::ranges::count(placed.noticed, scene.seats[i].id) > 0));
 }
 
 TEST_CASE("of many seats thirty are tried, seats that nobody fits on are left out, and threads change nothing",

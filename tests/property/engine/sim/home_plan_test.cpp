@@ -288,6 +288,33 @@ TEST_CASE("whoever sits at home gets up as often as people with monitors do", "[
   CHECK_FALSE(agrees(drawn));  // a twin who gets up for what the day has drawn alone
 }
 
+TEST_CASE("whoever eats stays at the table for most meals", "[people]") {
+  // A meal lasts 25 to 60 min, and in a quarter to a half of them somebody fetches something: an errand in 60 to 240
+  // min.
+  int errands = 0;
+  double eating_s = 0.0;
+  for (int seed = 1; seed <= 4; ++seed) {
+    const Model model =
+        compile(test::shipped_scene("flat.gltf"),
+                test::shipped_script("flat_week.yaml", {"sensing.response=zones", "seed=" + std::to_string(seed)}));
+    for (std::uint32_t run = 0; run < 7; ++run) {
+      for (const std::vector<ScriptedAction>& plan : sim::plan_home_day(model.compiled(), run)) {
+        double began_s = -1.0;
+        for (const ScriptedAction& action : plan) {
+          const bool eats = action.phase == std::string("eating");
+          if (action.at_s && !eats && began_s >= 0.0) eating_s += *action.at_s - std::exchange(began_s, -1.0);
+          if (action.at_s && eats && began_s < 0.0) began_s = *action.at_s;
+          if (eats && action.at_s && std::holds_alternative<action::Walk>(action.what)) ++errands;
+        }
+      }
+    }
+  }
+  REQUIRE(eating_s > 50.0 * 3600.0);
+  INFO(errands << " errands in " << eating_s / 3600.0 << " h");
+  CHECK(eating_s / errands > 60.0 * 60.0);
+  CHECK(eating_s / errands < 240.0 * 60.0);
+}
+
 namespace {
 
 /// Steps of a second of the shipped flat's people from one side of a wall to the other, beside its doorways.

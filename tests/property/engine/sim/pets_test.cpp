@@ -226,6 +226,42 @@ TEST_CASE("a dog gets up a tenth as often by night as by day", "[people][seconds
   CHECK(by_night < 8);
 }
 
+TEST_CASE("a pet's night is from 23 to 6: before and after it gets up as by day", "[people][seconds]") {
+  // Bouts begin once an hour by day, by night a cat's half as often and a dog's a tenth as often. Between two of them
+  // it is up for two minutes in the mean. So many hours of the day, each begun anew, have Poisson numbers.
+  constexpr double hour_s = 3600.0;
+  constexpr std::uint32_t n_hours = 240;
+  const auto bouts = [&](PetKind kind, const char* begin) {
+    ScriptSpec script = script_with_pet(kind, hour_s);
+    script.sensing.tick_rate_hz = script.sensing.ticks_per_window = 2;
+    script.begin = begin;
+    script.replicates = static_cast<int>(n_hours);
+    const Model model = compile(rooms_with_door(DoorState::open), script);
+    int found = 0;
+    for (std::uint32_t run = 0; run < n_hours; ++run) {
+      sim::RunState state(model.compiled(), run);
+      bool lay = true;
+      while (!state.finished) {
+        sim::move_tick(model.compiled(), state);
+        const bool lies = state.crowd.actors().back().motion().outline().fall == 1.0;
+        if (lay && !lies) ++found;
+        lay = lies;
+      }
+    }
+    return found;
+  };
+  const double least_by_day = n_hours - 4.0 * std::sqrt(n_hours) - 0.1 * n_hours;
+  for (const char* begin : {"2026-03-02T20:00", "2026-03-03T06:00"}) {
+    INFO(begin);
+    CHECK(bouts(PetKind::cat, begin) > least_by_day);
+  }
+  for (const char* begin : {"2026-03-02T23:00", "2026-03-03T05:00"}) {
+    INFO(begin);
+    CHECK(bouts(PetKind::cat, begin) < least_by_day);
+    CHECK(bouts(PetKind::dog, begin) < 0.1 * n_hours + 4.0 * std::sqrt(0.1 * n_hours));
+  }
+}
+
 TEST_CASE("people do the same with a cat as without, and nobody counts it", "[people][seconds]") {
   const SceneSpec scene = test::shipped_scene("flat.gltf");
   ScriptSpec script = test::shipped_script("flat_week.yaml", {"sensing.response=zones", "sensing.tick_rate_hz=10"});
