@@ -151,7 +151,7 @@ std::vector<std::string> as_advised(std::vector<std::string> lines, const std::s
 
 }  // namespace
 
-TEST_CASE("a plan's fault has its place, what is in the way, and a remedy that works", "[home_plan]") {
+TEST_CASE("a plan's fault has its place, what is in the way, and a remedy that works", "[home_plan][seconds]") {
   using Case = std::array<std::string, 4>;
   for (const auto& [washbasin, door, place, told] :
        std::initializer_list<Case>{{"y_m: 1.4", "x_m: 0.6, hinge: left", "", ""},
