@@ -978,7 +978,7 @@ class PlanDrawer {
 /// The first change of the plan with which this fault is gone, and no other one comes; else the first with which rooms,
 /// doors and pieces fit together, and only a way is missing; or nothing.
 std::string what_helps(const Issue& issue, const PlanFault& fault, const HomePlanSpec& plan, PlanDrawer& drawer) {
-  constexpr int tries_of_changes = 3;
+  constexpr int tries_of_changes = 2;
   std::string helps_here;
   for (const PlanChange& change : changes_of(plan, issue.where)) {
     const auto drawn = drawer.draw(change.plan, tries_of_changes);
