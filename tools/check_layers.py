@@ -17,7 +17,7 @@ BELOW["stats"] = {"model"}
 # rooms of a house: who may include whom
 ROOMS = {
     "model": {"core": set(), "geom": {"core"}, "schema": {"core", "geom"}},
-    "engine": {"study": set(), "rt": {"study"}, "body": {"study"}, "pir": {"study"}, "effects": {"study"},
+    "engine": {"study": set(), "rt": {"study"}, "body": {"study"}, "pir": {"study"}, "effects": {"study", "pir"},
                "sim": {"study", "rt", "body", "pir", "effects"}},
     "files": {"disk": set(), "read": {"disk"}, "write": {"disk", "read"}},
     "reconcile": {

@@ -86,6 +86,7 @@ struct SensorSight {
   std::string area;                ///< that it watches, or no text
   std::size_t area_places = 0;     ///< of that area
   std::size_t area_seen = 0;       ///< of these, where a zone sees a standing person
+  bool is_beam = false;            ///< it crosses a door, not the floor
   std::vector<std::string> seats;  ///< seats where a zone sees a sitter at rest
   std::string about{};             ///< of an array: pixels, noise and contrasts, in words
   [[nodiscard]] bool sees_nothing() const noexcept { return places == 0 && seats.empty(); }

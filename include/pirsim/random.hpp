@@ -42,7 +42,7 @@ enum class Purpose : std::uint32_t {
   home_errands = 32,        ///< what a resident gets up for, where they go at home and how long they stop there
   home_restlessness = 33,   ///< how much longer than others a resident stays seated; the same on all days
   telegram_collision = 43,  ///< telegram_collisions: which windows' telegrams collide, and which survives
-  array_frame = 41,         ///< noise of one frame of a thermopile array; entity: array and frame
+  array_frame = 41,         ///< noise of one frame of a thermopile array; entity: frame
   array_unit = 42,          ///< what one thermopile array always adds; the same in all runs
   effect_prior = 11,        ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.

@@ -200,7 +200,8 @@ std::vector<WorkNotice> watch(const WatchedRoom& room, const Worker& worker, int
         coverage.add(after.channels);
         detector.tick(before, after, triggers);
       }
-      for (std::size_t i = 0; i < triggers.size(); ++i) noticed[i] |= triggers[i];
+      for (std::size_t i = 0; i < triggers.size(); ++i)
+        noticed[i] |= static_cast<std::uint8_t>(triggers[i] & pir::output_on);
     }
     for (std::size_t i = 0; i < noticed.size(); ++i) notices[i].seconds += noticed[i];
   }
@@ -412,6 +413,7 @@ SightReport look_around(const Model& model) {
     sight.sensor = scene.sensors[i].id;
     if (areas.of_sensors()[i]) sight.area = areas.name_of_sensor(i);
     sight.outside = hangs_outside(scene.floor, scene.sensors[i].world_from_sensor.origin);
+    sight.is_beam = model.compiled().array().is_beam(i);
     count_rays(model, i, sight);
   }
   for (std::size_t i = 0; i < scene.arrays.size(); ++i) {
@@ -454,6 +456,75 @@ SightReport look_around(const Model& model) {
   return report;
 }
 
+namespace {
+
+/// A sensor's hold would last into the next pass; noise isn't the pet.
+SceneSpec to_watch_pets(SceneSpec scene) {
+  for (auto& [id, model] : scene.sensor_models) {
+    model.detector.report = {};
+    model.detector.amplifier.noise_v_pp = 0.0;
+  }
+  for (DoorSpec& door : scene.doors) door.state = DoorState::open;
+  return scene;
+}
+
+PetSight watch_pet(const Model& model, const SceneSpec& scene, const PetSpec& pet) {
+  constexpr double watched_s = 86400.0, shortest_m = 1.0, pause_s = 0.5;  // assumed
+  ScriptSpec script = model.script();
+  script.begin.clear();
+  script.summary = {};
+  script.effects.clear();
+  script.replicates = 1;
+  script.trials = {{.id = pet.id, .people = {}, .duration_s = watched_s, .pets = {pet}}};
+  const Model alone = compile(scene, std::move(script), {.like = &model});
+  const sim::CompiledStudy& study = alone.compiled();
+  const sim::SensorArray& array = study.array();
+  sim::RunState state(study, 0);
+  sim::Observer observer(array, study.tracer(), sim::ZonesOf::zone_sensors);
+  sim::Detector detector(array);
+  sim::Exposure before = array.unexposed(), after = before;
+  std::vector<std::uint8_t> triggers(array.n_sensors()), seen;
+  PetSight sight{pet.id, 0, std::vector<std::size_t>(array.n_sensors(), 0)};
+  const auto pause_ticks = static_cast<int>(pause_s / alone.tick_s());
+  double way_m = 0.0;
+  int still = pause_ticks;
+  std::optional<Vec2> at;
+  while (!state.finished) {
+    sim::move_tick(study, state);
+    const Vec2 now = state.crowd.actors().front().motion().position();
+    const double step_m = at ? glm::length(now - *at) : 0.0;
+    at = now;
+    if (still >= pause_ticks) {
+      if (step_m == 0.0) continue;
+      observer.look(state.crowd.actors(), state.crowd.doors().steps(), before);
+      detector.begin_run(study.seed(), static_cast<std::uint32_t>(sight.passes), before);
+      seen.assign(array.n_sensors(), 0);
+      way_m = 0.0;
+    }
+    way_m += step_m;
+    still = step_m > 0.0 ? 0 : still + 1;
+    observer.look(state.crowd.actors(), state.crowd.doors().steps(), after);
+    detector.tick(before, after, triggers);
+    std::swap(before, after);
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] |= static_cast<std::uint8_t>(triggers[i] & pir::output_on);
+    if (still < pause_ticks || way_m < shortest_m) continue;
+    ++sight.passes;
+    for (std::size_t i = 0; i < seen.size(); ++i) sight.seen[i] += seen[i];
+  }
+  return sight;
+}
+
+}  // namespace
+
+std::vector<PetSight> watch_pets(const Model& model) {
+  std::vector<PetSight> all;
+  const std::vector<TrialSpec>& trials = model.script().trials;
+  if (trials.empty() || trials.front().pets.empty()) return all;
+  const SceneSpec scene = to_watch_pets(model.scene());
+  for (const PetSpec& pet : trials.front().pets) all.push_back(watch_pet(model, scene, pet));
+  return all;
+}
+
 std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
   const Vec2 below = floor_point(place);
   const double away_m = distance_to_edge_m(floor, below);
@@ -469,10 +540,7 @@ std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
   GroupedWarnings blind;
   bool is_any = false, ends_at_room = false;
   for (const SensorSight& sight : report.sensors) {
-    const auto sensor = std::ranges::find(scene.sensors, sight.sensor, &SensorSpec::id);
-    const bool is_beam =  // which crosses a door, not the floor
-        sensor != scene.sensors.end() && scene.sensor_models.at(sensor->model).response == Response::beam;
-    if (is_beam) continue;
+    if (sight.is_beam) continue;
     is_any = true;
     ends_at_room = ends_at_room || sight.rays_cut > 0;
     if (sight.sees_nothing()) {

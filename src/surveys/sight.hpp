@@ -52,6 +52,15 @@ enum class SeatsTried { some, all };
 /// Stands a person (the script's first, or the default one) on every place of a grid and on every seat.
 [[nodiscard]] SightReport look_around(const Model& model);
 
+/// What sensors notice of a pet that is alone for a day, all doors open.
+struct PetSight {
+  std::string pet;
+  std::size_t passes = 0;         ///< of a metre or more, from one pause to the next
+  std::vector<std::size_t> seen;  ///< (n_sensors) of them, in which the sensor reports motion
+};
+/// Of the pets of the script's first trial.
+[[nodiscard]] std::vector<PetSight> watch_pets(const Model& model);
+
 /// "it hangs outside of the room, 70.0 m from the floor's edge", or empty: on a wall is as good as inside.
 [[nodiscard]] std::string hangs_outside(const FloorArea& floor, const Vec3& place);
 

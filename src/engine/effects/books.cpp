@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -12,34 +13,69 @@
 namespace pirsim::effects {
 namespace {
 
+/// What a log shows of a sensor some of whose telegrams are lost. A sensor that holds its motion sends one when it goes
+/// on and one when it goes off: what is lost leaves the log as it was until the next. Any other is asked in every
+/// window.
+class Telegrams {
+ public:
+  Telegrams(std::uint32_t sensor, const StageContext& context) {
+    const auto model = context.scene.sensor_models.find(context.scene.sensors[sensor].model);
+    holds_ = model != context.scene.sensor_models.end() && model->second.detector.report.hold_s > 0.0;
+  }
+  void begin_run() noexcept { sent_ = shown_ = 0; }
+  /// Whether there is a telegram for others to disturb.
+  [[nodiscard]] bool sends(std::uint8_t bit) const noexcept { return holds_ ? bit != sent_ : bit == 1; }
+  /// The row's bit after a window whose telegram, if there was any, was lost.
+  [[nodiscard]] std::uint8_t after(std::uint8_t bit, bool is_lost) noexcept {
+    if (!holds_) return is_lost ? 0 : bit;
+    if (sends(bit) && !is_lost) shown_ = bit;
+    sent_ = bit;
+    return shown_;
+  }
+
+ private:
+  bool holds_ = false;
+  std::uint8_t sent_ = 0, shown_ = 0;
+};
+
+std::vector<Telegrams> telegrams_of(const std::vector<std::uint32_t>& sensors, const StageContext& context) {
+  std::vector<Telegrams> telegrams;
+  for (const std::uint32_t sensor : sensors) telegrams.emplace_back(sensor, context);
+  return telegrams;
+}
+
 // dead_sensor: a sensor that says nothing any more, or less and less.
 
-/// Loses each row's bit with one probability from a moment of the run on.
+/// Loses each telegram with one probability from a moment of the run on.
 class DeadSensor final : public CloneableRowStage<DeadSensor> {
  public:
-  DeadSensor(std::vector<std::uint32_t> sensors, double loss, double from_s)
-      : sensors_(std::move(sensors)), loss_(loss), from_s_(from_s) {}
+  DeadSensor(std::vector<std::uint32_t> sensors, std::vector<Telegrams> telegrams, double loss, double from_s)
+      : sensors_(std::move(sensors)), telegrams_(std::move(telegrams)), loss_(loss), from_s_(from_s) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     streams_ = streams_of(sensors_, seed, run, Purpose::dead_sensor);
+    for (Telegrams& telegrams : telegrams_) telegrams.begin_run();
   }
 
   void apply(Sample& row) noexcept override {
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
       const bool lost = streams_[i].uniform() < loss_;
-      if (lost && row.time_s > from_s_) row.bits[sensors_[i]] = 0;
+      std::uint8_t& bit = row.bits[sensors_[i]];
+      bit = telegrams_[i].after(bit, lost && row.time_s > from_s_);
     }
   }
 
  private:
   std::vector<std::uint32_t> sensors_;
+  std::vector<Telegrams> telegrams_;  ///< (n of sensors_)
   double loss_;
   double from_s_;
   std::vector<Stream> streams_;
 };
 
 std::unique_ptr<RowStage> make_dead_sensor(const EffectSpec& effect, const StageContext& context) {
-  return std::make_unique<DeadSensor>(sensors_of(effect, context.scene), effect.parameters.at("loss"),
+  const std::vector<std::uint32_t> sensors = sensors_of(effect, context.scene);
+  return std::make_unique<DeadSensor>(sensors, telegrams_of(sensors, context), effect.parameters.at("loss"),
                                       effect.parameters.at("from_s"));
 }
 
@@ -48,21 +84,24 @@ void draw_dead_sensor(EffectSpec& effect, const SceneSpec& scene, const ScriptSp
 }
 
 Effect dead_sensor() {
-  return {.info = {.name = "dead_sensor",
-                   .family = Family::data,
-                   .stage = "books",
-                   .summary =
-                       "A sensor's rows are lost: all (dead) or a share of them (dying), from a moment of the run on.",
-                   .fingerprint = "one column empty or thinned, the others fit",
-                   .as_if = "rows of a sensor were lost",
-                   .confused_with = {"missed_triggers"},
-                   .parameters = {told_as("share of rows lost", strength("loss", "", 1.0, 0.5, 1.0, 1.0, "assumed")),
-                                  detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7, "assumed")},
-                   .choices = {sensor_choice()},
-                   .reach = Reach::rows,
-                   .idle_in = {Survey::walk_test}},
-          .make_row_stage = make_dead_sensor,
-          .draw = draw_dead_sensor};
+  return {
+      .info = {.name = "dead_sensor",
+               .family = Family::data,
+               .stage = "books",
+               .summary =
+                   "A sensor's telegrams are lost: all (dead) or a share of them (dying, or a bad radio), from a "
+                   "moment of the run on. A sensor that is asked in every window loses that row's motion. One that "
+                   "holds motion sends on and off: its column stays as it was until the next telegram comes through.",
+               .fingerprint = "one column empty or thinned, the others fit",
+               .as_if = "rows of a sensor were lost",
+               .confused_with = {"missed_triggers"},
+               .parameters = {told_as("share of rows lost", strength("loss", "", 1.0, 0.5, 1.0, 1.0, "assumed")),
+                              detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7, "assumed")},
+               .choices = {sensor_choice()},
+               .reach = Reach::rows,
+               .idle_in = {Survey::walk_test}},
+      .make_row_stage = make_dead_sensor,
+      .draw = draw_dead_sensor};
 }
 
 // labels_swapped: two sensors' columns are swapped.
@@ -224,47 +263,56 @@ enum class Survivor { none, one };
 
 class TelegramCollisions final : public CloneableRowStage<TelegramCollisions> {
  public:
-  TelegramCollisions(double chance, Survivor survivor) : chance_(chance), survivor_(survivor) {}
+  TelegramCollisions(std::vector<Telegrams> telegrams, double chance, Survivor survivor)
+      : telegrams_(std::move(telegrams)), chance_(chance), survivor_(survivor) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     stream_ = Stream({seed, run, 0, Purpose::telegram_collision});
+    for (Telegrams& telegrams : telegrams_) telegrams.begin_run();
   }
 
   void apply(Sample& row) noexcept override {
-    const auto n = static_cast<std::uint32_t>(std::ranges::count(row.bits, 1));
-    if (n < 2 || stream_.uniform() >= chance_) return;
-    const std::uint32_t survives = survivor_ == Survivor::one ? stream_.index(n) : n;
-    std::uint32_t i = 0;
-    for (std::uint8_t& bit : row.bits) {
-      if (bit == 1 && i++ != survives) bit = 0;
+    std::uint32_t n = 0;
+    for (std::size_t i = 0; i < telegrams_.size(); ++i) n += telegrams_[i].sends(row.bits[i]) ? 1 : 0;
+    const bool collide = n > 1 && stream_.uniform() < chance_;
+    const std::uint32_t survives = collide && survivor_ == Survivor::one ? stream_.index(n) : n;
+    std::uint32_t sender = 0;
+    for (std::size_t i = 0; i < telegrams_.size(); ++i) {
+      std::uint8_t& bit = row.bits[i];
+      bit = telegrams_[i].after(bit, telegrams_[i].sends(bit) && collide && sender++ != survives);
     }
   }
 
  private:
+  std::vector<Telegrams> telegrams_;  ///< (n_sensors)
   double chance_;
   Survivor survivor_;
   Stream stream_{{}};
 };
 
-std::unique_ptr<RowStage> make_telegram_collisions(const EffectSpec& effect, const StageContext&) {
-  return std::make_unique<TelegramCollisions>(effect.parameters.at("probability"),
+std::unique_ptr<RowStage> make_telegram_collisions(const EffectSpec& effect, const StageContext& context) {
+  std::vector<std::uint32_t> all(context.scene.sensors.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return std::make_unique<TelegramCollisions>(telegrams_of(all, context), effect.parameters.at("probability"),
                                               word(effect, "survivor") == "one" ? Survivor::one : Survivor::none);
 }
 
 Effect telegram_collisions() {
-  return {.info = {.name = "telegram_collisions",
-                   .family = Family::electronics,
-                   .stage = "books",
-                   .summary = "Sensors share a channel: of those that see motion in the same window, all telegrams are "
-                              "lost, or all but one at random, with one probability a window.",
-                   .fingerprint = "rows with motion at two sensors or more are rare, each sensor alone fits",
-                   .confused_with = {"missed_triggers", "dead_time"},
-                   .parameters = {told_as("probability of a collision",
-                                          strength("probability", "", 0.6, 0.2, 1.0, 1.0, "assumed"))},
-                   .choices = {{"survivor", ChoiceKind::variant, {"none", "one"}, "none"}},
-                   .reach = Reach::rows,
-                   .idle_in = {Survey::walk_test}},
-          .make_row_stage = make_telegram_collisions};
+  return {
+      .info = {.name = "telegram_collisions",
+               .family = Family::electronics,
+               .stage = "books",
+               .summary = "Sensors share a channel: of those that see motion in the same window (that go on or off, "
+                          "if they hold motion), all telegrams are lost, or all but one at random, with one "
+                          "probability a window.",
+               .fingerprint = "rows with motion at two sensors or more are rare, each sensor alone fits",
+               .confused_with = {"missed_triggers", "dead_time"},
+               .parameters = {told_as("probability of a collision",
+                                      strength("probability", "", 0.6, 0.2, 1.0, 1.0, "assumed"))},
+               .choices = {{"survivor", ChoiceKind::variant, {"none", "one"}, "none"}},
+               .reach = Reach::rows,
+               .idle_in = {Survey::walk_test}},
+      .make_row_stage = make_telegram_collisions};
 }
 
 }  // namespace

@@ -18,7 +18,10 @@ namespace pirsim::effects {
 struct Effect {
   EffectInfo info;
   void (*alter)(StudyInForce& study, const EffectSpec& effect) = nullptr;
+  /// Before a sensor holds its motion: what the element sees, and what the circuit makes of it.
   std::unique_ptr<TriggerStage> (*make_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  /// Behind it: what becomes of a sensor's output.
+  std::unique_ptr<TriggerStage> (*make_output_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
   /// Puts the clocks of the sensors that it is for wrong; stages come before.
   void (*set_clocks)(const EffectSpec& effect, const StageContext& context, Clocks& clocks) = nullptr;
   std::unique_ptr<RowStage> (*make_row_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;

@@ -4,14 +4,15 @@
 
 // What a sensor's circuit and the logger's clock make of what the element saw.
 // Assumed: each sensor by itself, alike at all times unless an effect has a trend.
-// Method: stages that drop, hold or move triggers tick by tick.
+// Method: stages that drop, hold or move triggers tick by tick. What drops them comes before the hold that a sensor has
+// by itself: no loss makes its pulses shorter.
 // Sources: hold and lock-out times of common PIR modules; else assumed.
 
 namespace pirsim::effects {
 namespace {
 
-// missed_triggers: what the zones saw and nobody was told: a poll that came to nothing, a threshold set too high, a
-// battery that runs down.
+// missed_triggers: what the zones saw and the sensor missed: a poll that came to nothing, a threshold set too high, a
+// battery that runs down. Lost telegrams: dead_sensor.
 
 /// Loses whole windows, so that the chance of a 1 is scaled whatever went on within the second.
 class MissedWindows final : public CloneableTriggerStage<MissedWindows> {
@@ -82,9 +83,9 @@ Effect missed_triggers() {
                    .family = Family::electronics,
                    .stage = "electronics",
                    .summary =
-                       "Triggers are lost with one probability, independently: those of a window altogether, or each "
-                       "by itself, which weak signals suffer from. It stays, or grows from run to run (a battery runs "
-                       "down) and is the mean over the study's runs.",
+                       "Triggers are lost with one probability, independently, before the sensor holds its motion: "
+                       "those of a window altogether, or each by itself, which weak signals suffer from. It stays, or "
+                       "grows from run to run (a battery runs down) and is the mean over the study's runs.",
                    .fingerprint = "all cells scaled by the same factor, or later ones more; isolated zeros",
                    .confused_with = {"dead_time", "thermal_contrast", "dead_sensor"},
                    .parameters = {told_as("probability of a miss", strength("probability", "", 0.2, 0.05, 0.6, 1.0,
@@ -143,7 +144,8 @@ Effect dead_time() {
                    .stage = "electronics",
                    .summary =
                        "After a trigger a sensor is blind for a fixed time, which a trigger meanwhile doesn't prolong "
-                       "(non-paralysable) or starts anew (paralysable).",
+                       "(non-paralysable) or starts anew (paralysable). A sensor that holds its motion holds that "
+                       "trigger.",
                    .fingerprint = "no short gaps between ones; busy cells are capped",
                    .confused_with = {"missed_triggers", "pulse_stretching"},
                    .parameters = {told_as("dead time",
@@ -225,7 +227,7 @@ Effect pulse_stretching() {
                            sensor_choice()},
                .reach = Reach::triggers,
                .idle_in = {Survey::walk_test}},
-      .make_stage = make_pulse_stretching,
+      .make_output_stage = make_pulse_stretching,
       .draw = draw_trend};
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "engine/effects/catalogue.hpp"
+#include "engine/pir/zone_motion.hpp"
+#include "pirsim/response.hpp"
 
 namespace pirsim::effects {
 
@@ -58,14 +60,23 @@ Pipeline::Pipeline(std::span<const EffectSpec> effects, const StageContext& cont
       if (spec.name != effect->info.name || is_off(spec)) continue;
       const EffectSpec complete = resolved(*effect, spec);
       if (effect->make_stage != nullptr) add(effect->make_stage(complete, context));
+      if (effect->make_output_stage != nullptr) add_behind_output(effect->make_output_stage(complete, context));
       if (effect->set_clocks != nullptr) effect->set_clocks(complete, context, clocks_);
       if (effect->make_row_stage != nullptr) add(effect->make_row_stage(complete, context));
     }
   }
+  for (std::size_t i = 0; i < context.scene.sensors.size() && !trigger_stages_.empty(); ++i) {
+    const auto model = context.scene.sensor_models.find(context.scene.sensors[i].model);
+    if (model == context.scene.sensor_models.end()) continue;
+    const Response response = response_of(context.scene, context.sensing, context.scene.sensors[i]);
+    const auto output = pir::output_of(model->second.detector, response, 1.0 / context.sensing.tick_rate_hz);
+    if (output) outputs_.push_back({i, *output});
+  }
 }
 
-Pipeline::Pipeline(const Pipeline& other) : clocks_(other.clocks_) {
+Pipeline::Pipeline(const Pipeline& other) : outputs_(other.outputs_), clocks_(other.clocks_) {
   for (const auto& stage : other.trigger_stages_) add(stage->clone());
+  for (const auto& stage : other.output_stages_) add_behind_output(stage->clone());
   for (const auto& stage : other.row_stages_) add(stage->clone());
 }
 
@@ -76,16 +87,29 @@ Pipeline& Pipeline::operator=(const Pipeline& other) {
 
 void Pipeline::begin_run(std::uint64_t seed, std::uint32_t run) {
   for (const auto& stage : trigger_stages_) stage->begin_run(seed, run);
+  for (Output& output : outputs_) output.state = {};
+  for (const auto& stage : output_stages_) stage->begin_run(seed, run);
   clocks_.begin_run();
   for (const auto& stage : row_stages_) stage->begin_run(seed, run);
 }
 
 void Pipeline::seat_left(std::size_t seat) {
   for (const auto& stage : trigger_stages_) stage->seat_left(seat);
+  for (const auto& stage : output_stages_) stage->seat_left(seat);
 }
 
 void Pipeline::hear(std::int64_t tick, std::span<std::uint8_t> triggers) {
+  for (auto& [sensor, comparator, state] : outputs_) {
+    const auto signal = triggers[sensor] & pir::signal_above ? 1 : triggers[sensor] & pir::signal_below ? -1 : 0;
+    triggers[sensor] = comparator.counts(state, static_cast<std::int8_t>(signal)) ? pir::output_on : std::uint8_t{0};
+  }
+  for (std::uint8_t& trigger : triggers) trigger &= pir::output_on;
   for (const auto& stage : trigger_stages_) stage->tick(tick, triggers);
+  for (auto& [sensor, comparator, state] : outputs_) {
+    comparator.report(state, triggers[sensor] != 0);
+    triggers[sensor] = state.on ? pir::output_on : std::uint8_t{0};
+  }
+  for (const auto& stage : output_stages_) stage->tick(tick, triggers);
   clocks_.hear(tick, triggers);
 }
 

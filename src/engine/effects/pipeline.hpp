@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/pir/analog_circuit.hpp"
 #include "pirsim/rays.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
@@ -88,16 +89,18 @@ class Pipeline {
   ~Pipeline() = default;
 
   void add(std::unique_ptr<TriggerStage> stage) { trigger_stages_.push_back(std::move(stage)); }
+  void add_behind_output(std::unique_ptr<TriggerStage> stage) { output_stages_.push_back(std::move(stage)); }
   void add(std::unique_ptr<RowStage> stage) { row_stages_.push_back(std::move(stage)); }
   /// Whether it does nothing to anything.
-  [[nodiscard]] bool empty() const noexcept {
-    return trigger_stages_.empty() && clocks_.all_right() && row_stages_.empty();
+  [[nodiscard]] bool empty() const noexcept { return !acts_on_triggers() && row_stages_.empty(); }
+  [[nodiscard]] bool acts_on_triggers() const noexcept {
+    return !trigger_stages_.empty() || !output_stages_.empty() || !clocks_.all_right();
   }
-  [[nodiscard]] bool acts_on_triggers() const noexcept { return !trigger_stages_.empty() || !clocks_.all_right(); }
 
   void begin_run(std::uint64_t seed, std::uint32_t run);
   void seat_left(std::size_t seat);
-  /// Once a tick, from tick 1 on. triggers: (n_sensors) the detectors' at this tick; the stages change them.
+  /// Once a tick, from tick 1 on. triggers: (n_sensors) what the detectors say at this tick (sim::Detector::tick); left
+  /// as 1 where a sensor's output is on, else 0. What a stage loses or adds before the output comes before its hold.
   void hear(std::int64_t tick, std::span<std::uint8_t> triggers);
   /// Whether heard_by() may be a later tick than was asked for.
   [[nodiscard]] bool looks_ahead() const noexcept { return clocks_.any_early(); }
@@ -110,7 +113,16 @@ class Pipeline {
   void apply(Sample& row) noexcept;
 
  private:
+  /// A sensor that counts or holds motion, once more, as motion was lost or added before.
+  struct Output {
+    std::size_t sensor;
+    pir::Comparator comparator;
+    pir::Comparator::State state{};
+  };
+
   std::vector<std::unique_ptr<TriggerStage>> trigger_stages_;
+  std::vector<Output> outputs_;  ///< of all such sensors, if there are trigger stages
+  std::vector<std::unique_ptr<TriggerStage>> output_stages_;
   Clocks clocks_;
   std::vector<std::unique_ptr<RowStage>> row_stages_;
 };

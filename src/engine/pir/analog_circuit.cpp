@@ -225,38 +225,46 @@ void Comparator::count_motion(State& state) const noexcept {
   state.deaf_left = again_;
 }
 
-void Comparator::count_pulse(State& state) const noexcept {
-  if (spec_.pulse_signs == PulseSigns::alternating && state.pulses > 0 && state.side == state.last_pulse_side) return;
+bool Comparator::count_pulse(State& state) const noexcept {
+  if (spec_.pulse_signs == PulseSigns::alternating && state.pulses > 0 && state.side == state.last_pulse_side)
+    return false;
   state.last_pulse_side = state.side;
   state.pulse_age[state.pulses++] = 0;
-  if (state.pulses >= spec_.pulse_count) count_motion(state);
+  return state.pulses >= spec_.pulse_count;
 }
 
 void Comparator::advance(State& state, double volts) const noexcept {
   advance_to(state, static_cast<std::int8_t>(volts > spec_.positive_v ? 1 : volts < -spec_.negative_v ? -1 : 0));
 }
 
-void Comparator::advance_to(State& state, std::int8_t side) const noexcept {
+bool Comparator::counts(State& state, std::int8_t side) const noexcept {
   const std::int8_t before = state.side;
   state.side = side;
-  const bool is_deaf = state.deaf_left > 0;
-  if (is_deaf) --state.deaf_left;
-  if (state.on) {
-    if (side != 0 && !is_deaf && (again_ == 0 || state.hold_left > 0)) return count_motion(state);
-    if (state.hold_left > 0) {
-      --state.hold_left;
-    } else {
-      state = {.side = side, .deaf_left = std::max(state.deaf_left, blind_)};
-    }
-    return;
-  }
-  if (is_deaf) return;
+  if (state.on) return side != 0;
+  if (state.deaf_left > 0) return false;
   for (int i = 0; i < state.pulses; ++i) age(state.pulse_age[i]);
   while (state.pulses > 0 && state.pulse_age[0] > pulse_window_) {
     std::copy(state.pulse_age + 1, state.pulse_age + state.pulses, state.pulse_age);
     state.pulse_age[--state.pulses] = 0;
   }
-  if (side != 0 && side != before) count_pulse(state);
+  return side != 0 && side != before && count_pulse(state);
+}
+
+void Comparator::report(State& state, bool motion) const noexcept {
+  const bool is_deaf = state.deaf_left > 0;
+  if (is_deaf) --state.deaf_left;
+  if (motion && !is_deaf && (!state.on || again_ == 0 || state.hold_left > 0)) return count_motion(state);
+  const bool is_lost = !motion && (state.on ? state.side != 0 : state.pulses >= spec_.pulse_count);
+  if (is_lost) {
+    state.side = 0;
+    if (!state.on) --state.pulses;
+  }
+  if (!state.on) return;
+  if (state.hold_left > 0) {
+    --state.hold_left;
+  } else {
+    state = {.side = state.side, .deaf_left = std::max(state.deaf_left, blind_)};
+  }
 }
 
 AnalogCircuit::AnalogCircuit(const DetectorSpec& spec, double volts_per_watt, double tick_s)

@@ -50,6 +50,10 @@ class AnalogFilter {
 
 // From a signal to an output that is on or off.
 
+/// What a detector says at a tick: its output, and on which side of the window the signal is that it follows from.
+/// Without a comparator only the output.
+inline constexpr std::uint8_t output_on = 1, signal_above = 2, signal_below = 4;
+
 /// A window comparator that counts pulses, and what its device reports; time in ticks.
 ///
 /// A *pulse* begins with the tick at which the signal is outside the window, having been inside or on the other side
@@ -72,6 +76,11 @@ class Comparator {
     std::int32_t hold_left = 0;                ///< ticks that the output stays on without more motion
     std::int32_t deaf_left = 0;                ///< ticks during which nothing counts
     bool operator==(const State&) const = default;
+
+    [[nodiscard]] std::uint8_t trigger() const noexcept {
+      const std::uint8_t signal = side > 0 ? signal_above : side < 0 ? signal_below : std::uint8_t{0};
+      return static_cast<std::uint8_t>(signal | (on ? output_on : 0U));
+    }
   };
 
   /// Throws Error(usage) for thresholds that aren't positive, negative times or a count outside 1 to most_pulses.
@@ -80,11 +89,18 @@ class Comparator {
   /// One tick on. volts: above the offset.
   void advance(State& state, double volts) const noexcept;
   /// One tick on. side: +1 above the window, -1 below, 0 inside.
-  void advance_to(State& state, std::int8_t side) const noexcept;
+  void advance_to(State& state, std::int8_t side) const noexcept { report(state, counts(state, side)); }
+
+  // The two halves of a tick, for whoever loses or adds motion in between.
+
+  /// Whether motion counts at this tick, unless the device ignores all motion just now.
+  [[nodiscard]] bool counts(State& state, std::int8_t side) const noexcept;
+  /// Switches the output. motion: what counts(); motion that was lost in between was no pulse.
+  void report(State& state, bool motion) const noexcept;
 
  private:
   void count_motion(State& state) const noexcept;
-  void count_pulse(State& state) const noexcept;
+  bool count_pulse(State& state) const noexcept;
 
   ComparatorSpec spec_;
   std::int32_t pulse_window_ = 0, hold_ = 0, again_ = 0, blind_ = 0;  ///< ticks

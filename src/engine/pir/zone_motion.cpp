@@ -208,12 +208,13 @@ void SoftEdges::notice_swept(const ZoneSet& before, const ZoneSet& after, std::s
   }
 }
 
-std::optional<Comparator> zone_output(const DetectorSpec& spec, double tick_s) {
+std::optional<Comparator> output_of(const DetectorSpec& spec, Response response, double tick_s) {
   const auto& [hold_s, again_s, blind_s] = spec.report;
-  if (spec.comparator.pulse_count == 1 && hold_s == 0.0 && again_s == 0.0 && blind_s == 0.0) return std::nullopt;
-  ComparatorSpec unsigned_pulses = spec.comparator;
-  unsigned_pulses.pulse_signs = PulseSigns::any;
-  return Comparator(unsigned_pulses, spec.report, tick_s);
+  const bool follows = spec.comparator.pulse_count == 1 && hold_s == 0.0 && again_s == 0.0 && blind_s == 0.0;
+  if (follows || response == Response::beam) return std::nullopt;
+  ComparatorSpec pulses = spec.comparator;
+  if (response == Response::zones) pulses.pulse_signs = PulseSigns::any;
+  return Comparator(pulses, spec.report, tick_s);
 }
 
 WindowReader::WindowReader(std::vector<std::int32_t> lead_ticks, std::int32_t ticks_per_window)

@@ -126,11 +126,12 @@ class SoftEdges {
   bool settled_ = true;        ///< covered_area: the covered shares are the usual ones
 };
 
-// What hard zones keep of a sensor's circuit: the comparator's counting, holding and blind time.
+// What each response keeps of a sensor's circuit: the comparator's counting, holding and blind time.
 
 /// Behind zones, the signal is outside the window at the ticks at which a zone changes; which side it would be on isn't
-/// known, so that pulses of any sign count. None if the output is on at just those ticks.
-[[nodiscard]] std::optional<Comparator> zone_output(const DetectorSpec& spec, double tick_s);
+/// known, so that pulses of any sign count. None if the output is on at just the ticks at which the signal is outside,
+/// and behind a beam.
+[[nodiscard]] std::optional<Comparator> output_of(const DetectorSpec& spec, Response response, double tick_s);
 
 // Who asks the sensors, once a window, whether they have seen motion.
 

@@ -288,7 +288,7 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   for (const SensorSpec& sensor : scene.sensors) {
     const DetectorSpec& detector = scene.sensor_models.at(sensor.model).detector;
     const bool by_zones = response_of(scene, sensing, sensor) == Response::zones;
-    zone_outputs_.push_back(by_zones ? pir::zone_output(detector, tick_s_) : std::nullopt);
+    zone_outputs_.push_back(by_zones ? pir::output_of(detector, Response::zones, tick_s_) : std::nullopt);
   }
   if (!AnalogModel::is_needed(scene, sensing)) return;
   analog_.emplace(scene, sensing, *room_, like != nullptr ? like->analog() : nullptr);

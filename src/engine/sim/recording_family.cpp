@@ -550,11 +550,14 @@ bool has_doors(const CompiledStudy& study) { return !study.scene().doors.empty()
 
 constexpr std::size_t bits_per_word = 64;
 
-void set(std::vector<std::uint64_t>& bits, std::size_t tick) {
-  bits[tick / bits_per_word] |= std::uint64_t{1} << (tick % bits_per_word);
+/// Remembers what a sensor says at a tick; what was never said takes no memory.
+void note(std::span<std::vector<std::uint64_t>> told, std::size_t tick, std::uint8_t trigger) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if ((trigger >> i & 1U) == 0) continue;
+    if (told[i].size() <= tick / bits_per_word) told[i].resize(tick / bits_per_word + 1, 0);
+    told[i][tick / bits_per_word] |= std::uint64_t{1} << (tick % bits_per_word);
+  }
 }
-
-std::size_t n_words(std::size_t n_ticks) { return (n_ticks + bits_per_word - 1) / bits_per_word; }
 
 /// Of a moment, as detectors take it.
 void show(const SensorArray& array, const Recording& recording, std::uint32_t moment, Exposure& exposure) {
@@ -682,7 +685,10 @@ void RememberedTriggers::begin_run(std::uint64_t seed, std::uint32_t run) {
 void RememberedTriggers::tick(std::uint32_t, std::uint32_t, std::span<std::uint8_t> triggers) noexcept {
   const std::size_t word = tick_ / bits_per_word, bit = tick_ % bits_per_word;
   for (std::size_t sensor = 0; sensor < triggers.size(); ++sensor) {
-    triggers[sensor] = static_cast<std::uint8_t>(now_->triggers[sensor][word] >> bit & 1U);
+    const Told& told = now_->triggers[sensor];
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      if (word < told[i].size()) triggers[sensor] |= static_cast<std::uint8_t>((told[i][word] >> bit & 1U) << i);
+    }
   }
   ++tick_;
 }
@@ -690,11 +696,11 @@ void RememberedTriggers::tick(std::uint32_t, std::uint32_t, std::span<std::uint8
 RememberedTriggers::Run RememberedTriggers::find_triggers(const RecordedRun& track, std::uint64_t seed) {
   const SensorArray& array = study_.array();
   Run run{seed, &track, {}};
-  run.triggers.assign(array.n_sensors(), Bits(n_words(track.moments.size()), 0));
+  run.triggers.resize(array.n_sensors());
   find_zone_triggers(run);
   for (std::uint32_t sensor = 0; sensor < array.n_sensors(); ++sensor) {
     if (!array.is_analog(sensor)) continue;
-    const Bits* known = known_triggers(run, sensor);
+    const Told* known = known_triggers(run, sensor);
     run.triggers[sensor] = known != nullptr ? *known : analog_triggers(run, sensor);
   }
   return run;
@@ -721,13 +727,11 @@ void RememberedTriggers::find_zone_triggers(Run& run) const {
       std::swap(before, after);
       number = now;
     }
-    for (std::size_t sensor = 0; sensor < triggers.size(); ++sensor) {
-      if (triggers[sensor] != 0) set(run.triggers[sensor], tick);
-    }
+    for (std::size_t sensor = 0; sensor < triggers.size(); ++sensor) note(run.triggers[sensor], tick, triggers[sensor]);
   }
 }
 
-RememberedTriggers::Bits RememberedTriggers::analog_triggers(const Run& run, std::uint32_t sensor) {
+RememberedTriggers::Told RememberedTriggers::analog_triggers(const Run& run, std::uint32_t sensor) {
   const CalibratedSensor& made = *study_.array().analog()->sensors()[sensor];
   const RecordedRun& track = *run.track;
   const auto watts = [&](std::uint32_t moment) { return made.watts(recording_.powers_of(moment, sensor)); };
@@ -735,15 +739,15 @@ RememberedTriggers::Bits RememberedTriggers::analog_triggers(const Run& run, std
       made.detector.start(watts(track.rest), {run.seed, track.rows.run, sensor, Purpose::detector_noise});
   std::span<const double> normals;
   if (made.detector.noisy()) normals = noise_.normals(state.noise, track.moments.size());
-  Bits bits(n_words(track.moments.size()), 0);
+  Told told;
   for (std::size_t tick = 0; tick < track.moments.size(); ++tick) {
     made.detector.advance(state, watts(track.moments[tick]), normals.empty() ? 0.0 : normals[tick]);
-    if (pir::AnalogCircuit::on(state)) set(bits, tick);
+    note(told, tick, state.comparator.trigger());
   }
-  return bits;
+  return told;
 }
 
-const RememberedTriggers::Bits* RememberedTriggers::known_triggers(const Run& run, std::uint32_t sensor) const {
+const RememberedTriggers::Told* RememberedTriggers::known_triggers(const Run& run, std::uint32_t sensor) const {
   if (like_ == nullptr || like_->study_.array().analog() == nullptr) return nullptr;
   const auto& others = like_->study_.array().analog()->sensors();
   if (sensor >= others.size() || others[sensor] != study_.array().analog()->sensors()[sensor]) return nullptr;

@@ -1,6 +1,7 @@
 // A study and others that differ from it in a little: whatever is the same is followed and traced once.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -75,17 +76,18 @@ class RememberedTriggers final : public DetectorLogic {
 
  private:
   using Bits = std::vector<std::uint64_t>;  ///< one a tick
+  using Told = std::array<Bits, 3>;         ///< of one sensor, by the bits of a trigger; empty: never set
   struct Run {
     std::uint64_t seed = 0;
     const RecordedRun* track = nullptr;
-    std::vector<Bits> triggers;  ///< (n_sensors)
+    std::vector<Told> triggers;  ///< (n_sensors)
   };
 
   [[nodiscard]] Run find_triggers(const RecordedRun& track, std::uint64_t seed);
   void find_zone_triggers(Run& run) const;
-  [[nodiscard]] Bits analog_triggers(const Run& run, std::uint32_t sensor);
+  [[nodiscard]] Told analog_triggers(const Run& run, std::uint32_t sensor);
   /// Those of the other study's run, if the sensor receives the same.
-  [[nodiscard]] const Bits* known_triggers(const Run& run, std::uint32_t sensor) const;
+  [[nodiscard]] const Told* known_triggers(const Run& run, std::uint32_t sensor) const;
 
   const CompiledStudy& study_;
   const Recording& recording_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/sim/schedule.hpp"
+#include "model/core/text.hpp"
 #include "model/schema/words.hpp"
 
 namespace pirsim::sim {
@@ -63,7 +65,7 @@ void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     if (!outputs_[i]) continue;
     array_->zone_outputs()[i]->advance_to(*outputs_[i], triggers[i] != 0 ? 1 : 0);
-    triggers[i] = outputs_[i]->on ? 1 : 0;
+    triggers[i] = outputs_[i]->trigger();
   }
 }
 
@@ -83,7 +85,7 @@ void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> 
     if (!analog_[i]) continue;
     const AnalogModel& model = *array_->analog();
     model.sensors()[i]->detector.advance(*analog_[i], model.watts(i, exposure.powers));
-    triggers[i] = pir::AnalogCircuit::on(*analog_[i]) ? 1 : 0;
+    triggers[i] = analog_[i]->comparator.trigger();
   }
 }
 
@@ -110,8 +112,26 @@ pir::WindowReader in_step(std::size_t n_sensors, std::int32_t ticks_per_window) 
   return {std::vector<std::int32_t>(n_sensors, 0), ticks_per_window};
 }
 
+/// Of a home with somebody on the floor.
+std::string use_of_home(const CompiledStudy& study, const Crowd& crowd) {
+  const Areas& areas = study.areas();
+  std::vector<int> asleep(areas.size() + 1, 0), up = asleep;  // the last: of all areas
+  for (const Actor& actor : crowd.actors()) {
+    if (!actor.counts_on(study.scene().floor)) continue;
+    std::vector<int>& some = actor.phase() == manner_of(HomeActivity::sleep).phase ? asleep : up;
+    ++some.back();
+    if (!areas.empty()) ++some[areas.at(actor.motion().position())];
+  }
+  if (up.back() == 0) return std::string(phase_asleep);
+  std::vector<std::string> dark;
+  for (std::size_t area = 0; area < areas.size(); ++area) {
+    if (asleep[area] > 0 && up[area] == 0) dark.push_back(areas.names()[area]);
+  }
+  return dark.empty() ? std::string(phase_occupied) : std::string(asleep_in) + joined(dark, asleep_and);
+}
+
 /// What the people on the floor use the room for.
-std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
+std::string use_of(const CompiledStudy& study, const TrialModel& trial, const Crowd& crowd) {
   int n = 0, cleaners = 0, in_meeting = 0;
   for (const Actor& actor : crowd.actors()) {
     if (!actor.counts_on(study.scene().floor)) continue;
@@ -120,8 +140,11 @@ std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
     cleaners += part && part->part == SchedulePart::cleaner ? 1 : 0;
     in_meeting += actor.takes_part_in_meeting() ? 1 : 0;
   }
-  if (n == 0) return phase_empty;
-  return in_meeting > 1 ? phase_meeting : cleaners == n ? phase_cleaning : phase_occupied;
+  if (n > 0 && trial.schedule && trial.schedule->household) return use_of_home(study, crowd);
+  return std::string(n == 0           ? phase_empty
+                     : in_meeting > 1 ? phase_meeting
+                     : cleaners == n  ? phase_cleaning
+                                      : phase_occupied);
 }
 
 /// All on the floor, and those of each area.
@@ -141,7 +164,7 @@ void end_window(const CompiledStudy& study, RunState& state) {
   Sample& sample = state.sample;
   sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
   if (state.clock) sample.clock = state.clock->text(sample.time_s);
-  sample.phase = trial.is_populated() ? use_of(study, state.crowd) : state.crowd.phase();
+  sample.phase = trial.is_populated() ? use_of(study, trial, state.crowd) : std::string(state.crowd.phase());
   count_people(study, state.crowd, sample);
   sample.doors.clear();
   for (const LeafStep step : state.crowd.doors().steps()) sample.doors.push_back(step == 0 ? 0 : 1);

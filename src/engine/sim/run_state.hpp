@@ -32,7 +32,8 @@ class Detector {
 
   /// Forgets everything, and settles as if `rest` had been seen for long. Seed and run fix all randomness.
   void begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest);
-  /// From one tick to the next. triggers: (n_sensors) set to 1 where a sensor triggers at the later one, else to 0.
+  /// From one tick to the next. triggers: (n_sensors) set to what each says at the later one: pir::output_on where it
+  /// triggers, and of a comparator the side of its signal.
   void tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept;
   /// tick() with the same exposure before and after, without comparing it.
   void tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;

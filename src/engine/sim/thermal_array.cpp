@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/sim/run_state.hpp"
+#include "model/core/random.hpp"
 #include "model/schema/limits.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/random.hpp"
@@ -112,6 +113,9 @@ pir::PowerRays rays_of(const SensorSpec& sensor, const ArraySpec& spec) {
   return rays;
 }
 
+/// Which array it is, by its name: others may be put before it.
+std::uint64_t number_of(const std::string& name) { return std::stoull(sha256(name).substr(0, 16), nullptr, 16); }
+
 /// Told before anything is made of the array.
 const ArraySpec& checked(const SceneSpec& scene, std::size_t index, const SensingInForce& sensing) {
   const SensorSpec& sensor = scene.arrays[index];
@@ -133,8 +137,7 @@ const ArraySpec& checked(const SceneSpec& scene, std::size_t index, const Sensin
 ThermalArray::ThermalArray(const SceneSpec& scene, std::size_t index, const SensingInForce& sensing, std::uint64_t seed,
                            const rt::Room& room, const std::vector<DoorLeaf>& leaves)
     : spec_(checked(scene, index, sensing)),
-      index_(static_cast<std::uint32_t>(index)),
-      seed_(seed),
+      seed_(seed ^ number_of(scene.arrays[index].id)),
       rate_hz_(rate_of(spec_, sensing)),
       tick_rate_hz_(sensing.tick_rate_hz),
       room_(&room),
@@ -180,7 +183,7 @@ ThermalArray::ThermalArray(const SceneSpec& scene, std::size_t index, const Sens
 }
 
 void ThermalArray::draw_unit() {
-  Stream stream({seed_, 0, index_, Purpose::array_unit});
+  Stream stream({seed_, 0, 0, Purpose::array_unit});
   const double offset_k = spec_.offset_k * stream.normal();
   std::vector<double> columns_k;
   for (int column = 0; column < spec_.columns; ++column) columns_k.push_back(spec_.column_k * stream.normal());
@@ -219,8 +222,7 @@ void ThermalArray::see(std::span<const PowerSteps> powers, std::span<double> cel
 
 void ThermalArray::read(std::span<const double> celsius, std::uint32_t run, std::int64_t frame, Pages pages,
                         std::span<float> values) const noexcept {
-  constexpr std::uint32_t most_arrays = 256;  // numbers repeat after 2^24 frames
-  Stream stream({seed_, run, index_ + most_arrays * static_cast<std::uint32_t>(frame), Purpose::array_frame});
+  Stream stream({seed_, run, static_cast<std::uint32_t>(frame), Purpose::array_frame});
   std::array<float, most_columns> normals{};
   draw_normals(stream, std::span(normals).first(1));
   const double common_k = spec_.common_k * std::sqrt(rate_hz_) * static_cast<double>(normals.front());

@@ -55,7 +55,6 @@ class ThermalArray {
   void draw_unit();
 
   ArraySpec spec_;
-  std::uint32_t index_;
   std::uint64_t seed_;
   double rate_hz_;
   int tick_rate_hz_;

@@ -1,6 +1,7 @@
 // The words of enumerations, as files and Python have them: each is said here alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -163,5 +164,20 @@ inline constexpr std::array<std::string_view, 9> phases_of_body{
 /// Of a room by a schedule.
 inline constexpr std::string_view phase_empty = "empty", phase_occupied = "occupied", phase_meeting = "meeting",
                                   phase_cleaning = "cleaning";
+/// Of a home in which everybody sleeps or goes to bed. If somebody is up, the areas in which all do so follow: "asleep
+/// in bedroom + nursery".
+inline constexpr std::string_view phase_asleep = "asleep", asleep_in = "asleep in ", asleep_and = " + ";
+
+/// Does everybody sleep, in a row with this phase, who is in the area? No name: in all of the home.
+[[nodiscard]] inline bool sleep_all(std::string_view phase, std::string_view area) {
+  if (!phase.starts_with(asleep_in)) return phase == phase_asleep;
+  phase.remove_prefix(asleep_in.size());
+  for (std::size_t end = 0; end < phase.size() && !area.empty(); phase.remove_prefix(end + asleep_and.size())) {
+    end = std::min(phase.find(asleep_and), phase.size());
+    if (phase.substr(0, end) == area) return true;
+    if (end == phase.size()) break;
+  }
+  return false;
+}
 
 }  // namespace pirsim

@@ -206,8 +206,9 @@ TEST_CASE("entries are complete and refer to one another by name") {
       CHECK((parameter.scale != effects::Scale::logarithmic || parameter.low > 0.0));
       CHECK((parameter.role == effects::Role::strength || parameter.off == parameter.typical));
     }
-    const bool rows = effect->make_row_stage != nullptr,
-               triggers = effect->make_stage != nullptr || effect->set_clocks != nullptr;
+    const bool rows = effect->make_row_stage != nullptr, triggers = effect->make_stage != nullptr ||
+                                                                    effect->make_output_stage != nullptr ||
+                                                                    effect->set_clocks != nullptr;
     CHECK((effect->alter != nullptr || rows || triggers));
     CHECK((info.reach == Reach::rows) == rows);
     CHECK((info.reach == Reach::triggers) == triggers);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/pir/analog_circuit.hpp"
 #include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
@@ -260,6 +261,161 @@ TEST_CASE("telegrams collide in as many windows as their probability says, and a
     CHECK(first + second == (survivor == "one" ? n - both : 0.0));
     CHECK(std::abs(first - second) < 4.0 * std::sqrt(chance * n));
   }
+}
+
+namespace {
+
+constexpr double hold_s = 10.0;
+constexpr std::size_t hold_ticks = 500;
+
+/// Both sensors hold motion for ten seconds after zones have changed.
+Bench holding_bench() {
+  Bench bench;
+  SensorModelSpec& model = bench.scene.sensor_models["holds"];
+  model.response = Response::zones;
+  model.detector.report.hold_s = hold_s;
+  for (SensorSpec& sensor : bench.scene.sensors) sensor.model = "holds";
+  return bench;
+}
+
+/// What a detector says whose output follows from these changes of zones.
+Series signals(Series changes) {
+  for (std::uint8_t& change : changes) change = change != 0 ? pir::signal_above : std::uint8_t{0};
+  return changes;
+}
+
+/// On from each trigger until so long after it.
+Series held(const Series& triggers) {
+  Series output(triggers.size(), 0);
+  std::size_t until = 0;
+  for (std::size_t i = 0; i < triggers.size(); ++i) {
+    if (triggers[i] != 0) until = i + hold_ticks + 1;
+    output[i] = i < until ? 1 : 0;
+  }
+  return output;
+}
+
+/// The shortest stretch of ones that has ended; 0 if there is none.
+std::size_t shortest_pulse(const Series& output) {
+  std::size_t shortest = 0, length = 0;
+  for (const std::uint8_t on : output) {
+    if (on == 0 && length > 0) shortest = shortest == 0 ? length : std::min(shortest, length);
+    length = on != 0 ? length + 1 : 0;
+  }
+  return shortest;
+}
+
+}  // namespace
+
+TEST_CASE("whatever a sensor misses or sees too much comes before its hold, and no pulse is shorter") {
+  const Bench plain, holding = holding_bench();
+  const Series changes = random_triggers(400'000, 0.002);
+  REQUIRE(shortest_pulse(held(changes)) == hold_ticks + 1);
+  std::vector<EffectSpec> all;
+  for (const double probability : {0.1, 0.5, 0.95}) {
+    all.push_back(effect("missed_triggers", {{"probability", probability}}));
+    all.push_back(effect("missed_triggers", {{"trigger_probability", probability}}, {{"unit", "trigger"}}));
+  }
+  all.push_back(effect("dead_time", {{"dead_s", 4.0}}));
+  all.push_back(effect("dead_time", {{"dead_s", 4.0}}, {{"kind", "paralysable"}}));
+  all.push_back(effect("false_triggers", {{"rate_per_s", 0.02}}));
+  all.push_back(effect("trigger_bursts", {{"length_s", 3.0}}));
+  for (const EffectSpec& one : all) {
+    CAPTURE(one.name, one.parameters, one.choices);
+    const Series output = through(holding.pipeline({one}), signals(changes))[0];
+    // The triggers that the same effect leaves a sensor without a hold, held by the rule.
+    const Series left = through(plain.pipeline({one}), changes)[0];
+    REQUIRE((left != changes));
+    CHECK((output == held(left)));  // whole series are no help in a message
+    CHECK(shortest_pulse(output) > hold_ticks);
+    // Must fail: the hold before the effect, as a sensor can't have it.
+    const Series late = through(plain.pipeline({one}), held(changes))[0];
+    CHECK_FALSE((late == held(left)));
+    CHECK_FALSE((shortest_pulse(late) > hold_ticks));
+  }
+}
+
+TEST_CASE("a sensor that holds motion misses as many triggers as the probability says") {
+  const Bench holding = holding_bench();
+  const std::size_t apart = 1000 + 37, n = 4000;  // longer than a hold and a window, at any moment of a window
+  std::vector<std::size_t> ticks;
+  for (std::size_t i = 1; i <= n; ++i) ticks.push_back(i * apart);
+  const Series changes = with_ones((n + 1) * apart, ticks);
+  for (const auto& [unit, parameter] :
+       {std::pair{"window", "probability"}, std::pair{"trigger", "trigger_probability"}})
+    for (const double probability : {0.1, 0.4}) {
+      CAPTURE(unit, probability);
+      const Series output =
+          through(holding.pipeline({effect("missed_triggers", {{parameter, probability}}, {{"unit", unit}})}),
+                  signals(changes))[0];
+      const double missed = static_cast<double>(n) - count(output) / static_cast<double>(hold_ticks + 1);
+      const double standard_error = std::sqrt(probability * (1.0 - probability) * static_cast<double>(n));
+      CHECK(std::abs(missed - probability * static_cast<double>(n)) < 4.0 * standard_error);
+      CHECK_FALSE(std::abs(missed - 1.4 * probability * static_cast<double>(n)) < 4.0 * standard_error);  // must fail
+    }
+}
+
+TEST_CASE("what prolongs a sensor's output comes behind its hold") {
+  const Series changes = with_ones(3000, {100, 300, 2000});
+  const Series output = through(holding_bench().pipeline({effect("pulse_stretching", {{"hold_s", 1.0}}),
+                                                          effect("missed_triggers", {{"probability", 1e-9}})}),
+                                signals(changes))[0];
+  CHECK(ones(output).size() == (300 - 100 + hold_ticks + 1 + 50) + (hold_ticks + 1 + 50));
+}
+
+TEST_CASE("a lost telegram of a sensor that holds motion leaves its column as it was until the next") {
+  constexpr int on_rows = 10, off_rows = 20, n = 8'000;
+  for (const double loss : {0.3, 0.5}) {
+    for (const bool holds : {true, false}) {
+      CAPTURE(loss, holds);
+      effects::Pipeline pipeline =
+          (holds ? holding_bench() : Bench()).pipeline({effect("dead_sensor", {{"loss", loss}})});
+      Series shown;
+      double on_after_on = 0.0, on_after_off = 0.0;
+      for (int i = 0; i < n * (on_rows + off_rows); ++i) {
+        Sample row;
+        row.time_s = i + 1.0;
+        const int place = i % (on_rows + off_rows);
+        row.bits.assign(2, place < on_rows ? 1 : 0);
+        pipeline.apply(row);
+        shown.push_back(row.bits[0]);
+        on_after_on += place == on_rows - 1 ? row.bits[0] : 0;
+        on_after_off += place == on_rows + off_rows - 1 ? row.bits[0] : 0;
+      }
+      // On after an `on` if it came through, or the `off` before it didn't and the column was still on: 1 / (1 + loss).
+      const double on = 1.0 / (1.0 + loss), stays = loss / (1.0 + loss);
+      const double standard_error = std::sqrt(on * stays / n * (1.0 + loss * loss) / (1.0 - loss * loss));
+      CHECK((std::abs(on_after_on / n - on) < 4.0 * standard_error) == holds);
+      CHECK((std::abs(on_after_off / n - stays) < 4.0 * standard_error) == holds);
+      CHECK((shortest_pulse(shown) >= on_rows) ==
+            holds);  // must fail: telegrams of a sensor that is asked every window
+    }
+  }
+}
+
+TEST_CASE("telegrams of sensors that hold motion collide where both go on or off, not while they are on") {
+  const auto rows = [](const std::string& survivor, const std::vector<std::array<std::uint8_t, 2>>& bits) {
+    effects::Pipeline pipeline =
+        holding_bench().pipeline({effect("telegram_collisions", {{"probability", 1.0}}, {{"survivor", survivor}})});
+    std::vector<std::array<std::uint8_t, 2>> after;
+    for (const auto& [a, b] : bits) {
+      Sample row;
+      row.bits = {a, b};
+      pipeline.apply(row);
+      after.push_back({row.bits[0], row.bits[1]});
+    }
+    return after;
+  };
+  using Rows = std::vector<std::array<std::uint8_t, 2>>;
+  // One after the other: nothing is lost.
+  CHECK(rows("none", {{1, 0}, {1, 1}, {0, 1}, {0, 0}}) == Rows{{1, 0}, {1, 1}, {0, 1}, {0, 0}});
+  // Both go on together: neither shows, and an `off` that comes through alone changes nothing.
+  CHECK(rows("none", {{1, 1}, {1, 1}, {0, 1}, {0, 0}}) == Rows{{0, 0}, {0, 0}, {0, 0}, {0, 0}});
+  // Both go off together: both stay on until A's next `off`; B's is still lost.
+  CHECK(rows("none", {{1, 0}, {1, 1}, {0, 0}, {1, 0}, {0, 0}}) == Rows{{1, 0}, {1, 1}, {1, 1}, {1, 1}, {0, 1}});
+  const Rows one = rows("one", {{1, 1}, {1, 1}});
+  CHECK(one[0][0] + one[0][1] == 1);
+  CHECK(one[1] == one[0]);
 }
 
 TEST_CASE("a late clock stamps every trigger later by its lag and its drift") {
