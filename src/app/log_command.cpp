@@ -209,11 +209,12 @@ void add_count_command(CLI::App& app) {
   const auto options = std::make_shared<CountOptions>();
   offer_input_file(command, "COUNTER", options->counter, "counter.json of pirsim calibrate")->required();
   offer_log(command, options->log);
-  offer_output(command, output_names, options->output, "counts as CSV (default: standard output)");
+  offer_output(command, output_names, options->output, "counts, .csv (default: standard output)", {".csv"});
   offer_output(command, "--by-day", options->days, "a row a day: hours with somebody, arrival, departure, .csv",
                {".csv"});
   offer_output(command, "--by-hour", options->hours, "a row an hour of the day: P(nobody), people, .csv", {".csv"});
-  offer_output(command, "--report", options->report, "a page with all of it, and the counts as time lines");
+  offer_output(command, "--report", options->report, "a page with all of it, and the counts as time lines, .html",
+               {".html"});
   command.add_flag_callback(
       "--forward", [options] { options->pass = counting::Pass::forward; },
       "each reading by those before it alone (default: by those after it as well)");

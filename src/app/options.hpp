@@ -94,9 +94,9 @@ CLI::Option* declare_inputs(CLI::App& command, CLI::Option* option, const std::v
 CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
                               const std::string& what);
 constexpr const char* output_names = "-o,--output";
-/// endings: those that its name may have; none: any.
+/// endings: those that its name may have, which say what is written.
 CLI::Option* offer_output(CLI::App& command, const std::string& names, std::filesystem::path& file,
-                          const std::string& what, const std::vector<std::string>& endings = {});
+                          const std::string& what, const std::vector<std::string>& endings);
 /// contents: what is written into it, as NamedFile has it.
 CLI::Option* offer_output_folder(CLI::App& command, const std::string& names, std::filesystem::path& folder,
                                  const std::string& what, const std::vector<std::string>& contents);

@@ -59,10 +59,14 @@ std::vector<HourSums> hours_of(std::span<const Estimates> days, double step_s) {
 /// When a reading begins.
 std::string moment(const LogRows& rows, std::size_t reading) { return to_text(rows.begin[reading], rows.clock); }
 
-std::string time_of_day(const LogRows& rows, std::size_t reading, double after_s) {
+std::string time_of_day(LogMoment at, LogClock clock) { return to_text(at, clock).substr(to_time, hms); }
+
+/// When a reading ends: midnight is the end of its day.
+std::string end_of(const LogRows& rows, std::size_t reading) {
   LogMoment at = rows.begin[reading];
-  at.us += std::llround(after_s * 1e6);
-  return to_text(at, rows.clock).substr(to_time, hms);
+  at.us += std::llround(rows.window_s * 1e6);
+  const std::string time = time_of_day(at, rows.clock);
+  return time == "00:00:00" ? "24:00:00" : time;
 }
 
 int hour_of(const LogRows& rows, std::size_t reading) {
@@ -208,11 +212,15 @@ std::vector<CountedDay> counted_days(const LogCounts& counts) {
     if (days.empty() || days.back().date != date) days.push_back({.date = date, .begin = i, .off = counts.figures_off});
     days.back().end = i + 1;
   }
+  // The one short reading that ends at a log's first midnight, or begins at its last, is no day.
+  const auto is_edge = [&](const CountedDay& day) { return day.end - day.begin == 1 && rows.window_s <= minute_s; };
+  if (has_dates && days.size() > 1 && is_edge(days.front())) days.erase(days.begin());
+  if (has_dates && days.size() > 1 && is_edge(days.back())) days.pop_back();
   for (CountedDay& day : days) {
     day.figures = figures_of(counts.estimates, day.begin, day.end, rows.window_s);
     if (!has_dates || !day.figures.first) continue;
-    day.arrival = time_of_day(rows, *day.figures.first, 0.0);
-    day.departure = time_of_day(rows, *day.figures.last, rows.window_s);
+    day.arrival = time_of_day(rows.begin[*day.figures.first], rows.clock);
+    day.departure = end_of(rows, *day.figures.last);
   }
   return days;
 }

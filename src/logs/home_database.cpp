@@ -131,10 +131,12 @@ std::string HomeDatabase::query(std::span<const std::string> entities) const {
   const bool has_names = has_column("states", "entity_id");
   const bool has_seconds = has_column("states", "last_updated_ts");  // from 31 on
   const bool has_texts = has_column("states", "last_updated");
-  if (!(names_apart || has_names) || !(has_seconds || has_texts) || !has_column("states", "state")) {
-    throw Error(ErrorCode::input, Where{path_.string()},
-                "expected a log, got a database (SQLite) that isn't Home Assistant's: it has no table of states; "
-                "export its table as CSV");
+  const bool has_views = has_rows("SELECT 1 FROM sqlite_master WHERE type = 'view'");  // which may never end
+  if (has_views || !(names_apart || has_names) || !(has_seconds || has_texts) || !has_column("states", "state")) {
+    throw Error(
+        ErrorCode::input, Where{path_.string()},
+        "expected a log, got a database (SQLite) that isn't Home Assistant's: it has no table of states, or has views; "
+        "export its table as CSV");
   }
   const std::string name = !names_apart ? "s.entity_id"
                            : has_names  ? "COALESCE(m.entity_id, s.entity_id)"

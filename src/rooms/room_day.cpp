@@ -178,7 +178,7 @@ class DayWriter {
     add(path("rows", recipe_.ending), rows(result.samples, moved));
     if (recipe_.occupants == Occupants::told) add(path("occupants", recipe_.ending), occupants(result.occupants));
     for (std::size_t i = 0; i < result.frames.size(); ++i)
-      add(path("frames", '_' + arrays[i].id + ".npy"), io::to_npy(result.frames[i]));
+      add(path("frames", '_' + io::file_part(arrays[i].id) + ".npy"), io::to_npy(result.frames[i]));
     for (const Export shape : recipe_.exports) {
       if (shape == Export::uci864) {
         const int n_rows = rows_per_reading(recipe_.sensing).value();

@@ -293,6 +293,12 @@ class Database(LogCase):
         other.close()
         self.assertIn("a database (SQLite) that isn't Home Assistant's: it has no table of states",
                       run("log", self.folder / "other.sqlite", code=3)[1])
+        endless = sqlite3.connect(self.folder / "endless.db")
+        endless.execute("CREATE VIEW states AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+                        "SELECT i AS state_id, 'binary_sensor.a' AS entity_id, 'on' AS state, i AS last_updated_ts FROM n")
+        endless.commit()
+        endless.close()
+        self.assertIn("has views", run("log", self.folder / "endless.db", code=3)[1])  # and ends
         self.assertIn("expected a text, got a database (SQLite)", run("control", path, "--delay", 5, code=3)[1])
         self.assertIn("expected a text, got a database (SQLite)", run("log", path, "--map", path, code=3)[1])
         (self.folder / "cut.db").write_bytes(path.read_bytes()[:6000])

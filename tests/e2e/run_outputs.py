@@ -180,9 +180,41 @@ class Refused(OutputsCase):
                 for words, file in self.places(command, one):
                     (self.folder / file).parent.mkdir(exist_ok=True, parents=True)
                     told = "one file|one of the files of" if file.endswith(ending) else "must end in"
-                    self.refused(*command, *needed(command, one, other), *words, *other.words(file), told=told)
+                    rest = needed(command, one, other)
+                    self.refused(*command, *rest, *words, *other.words(file), told=told)
                     tried += 1
-        self.assertGreater(tried, 60)
+                    if not file.endswith(ending):
+                        continue
+                    for name, target in self.links_to(file, ending):
+                        self.refused(*command, *rest, *words, *other.words(name))
+                        (self.folder / name).unlink()
+                        tried += 1
+        self.assertGreater(tried, 180)
+
+    def links_to(self, file, ending):
+        """Links to what isn't there yet: to the file, and to another such link by a folder's."""
+        link, far = self.folder / f"link{ending}", self.folder / f"far{ending}"
+        link.symlink_to(file)
+        yield link.name, file
+        link.symlink_to(file)
+        (self.folder / "here").unlink(missing_ok=True)
+        (self.folder / "here").symlink_to(".")
+        far.symlink_to(f"here/{link.name}")
+        yield far.name, file
+        link.unlink()
+
+    def test_every_output_has_an_ending_that_is_known(self):
+        tried = 0
+        for command in commands():
+            for option in options(command):
+                if option.group != "Outputs" or option.takes != "FILE":
+                    continue
+                ending = ending_of(command, option)
+                self.assertTrue(ending, (command, option.name))
+                for name in ("out.xyz", "out", f"{ending}x", ending):
+                    self.refused(*command, *needed(command, option), *option.words(name), told=r"must end in \.\w+")
+                    tried += 1
+        self.assertGreater(tried, 150)
 
     def test_a_file_is_the_same_by_all_its_names(self):
         self.write("log.csv")

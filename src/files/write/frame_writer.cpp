@@ -5,12 +5,26 @@
 #include <cmath>
 #include <cstdint>
 
+#include "model/core/random.hpp"
 #include "model/core/text.hpp"
 
 namespace pirsim::io {
 
+std::string file_part(const std::string& name, std::string_view also) {
+  constexpr std::string_view digits = "0123456789ABCDEF", reserved = "/\\%:*?\"<>|";  // of one system or another
+  constexpr std::size_t longest = 100, n_digits = 16;  // a file's whole name may have 255 bytes
+  std::string part;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_reserved = reserved.find(c) != std::string_view::npos || also.find(c) != std::string_view::npos;
+    const bool is_kept = byte > ' ' && byte != 127 && !is_reserved;
+    part += is_kept ? std::string(1, c) : std::string{'%', digits[byte >> 4U], digits[byte & 15U]};
+  }
+  return part.size() <= longest ? part : part.substr(0, longest) + "%." + sha256(name).substr(0, n_digits);
+}
+
 std::string frame_file(const std::string& array, const std::string& trial, int replicate) {
-  return array + '_' + trial + '_' + std::to_string(replicate) + ".npy";
+  return file_part(array, "_") + '_' + file_part(trial) + '_' + std::to_string(replicate) + ".npy";
 }
 
 std::string to_npy(const FrameStack& frames) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "pirsim/sample.hpp"
 
 namespace pirsim::io {
 
-/// "A1_S3_2.npy": of the array, the trial and the replicate.
+/// A name as a part of a file's name: what a file can't have in it, and `also`, in hexadecimal, "%2F"; of a very long
+/// one the beginning and a digest. Different names stay different.
+[[nodiscard]] std::string file_part(const std::string& name, std::string_view also = "");
+/// "A1_S3_2.npy": of the array, whose own underscores become "%5F", the trial and the replicate.
 [[nodiscard]] std::string frame_file(const std::string& array, const std::string& trial, int replicate);
 /// The bytes of a NumPy file, version 1.0: single precision, little-endian, in C order, (frame, y, x).
 [[nodiscard]] std::string to_npy(const FrameStack& frames);

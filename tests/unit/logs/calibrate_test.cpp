@@ -529,14 +529,14 @@ TEST_CASE("Days and hours of a counted log are what one sums up by hand, with ho
   REQUIRE(days.size() == 2);
   CHECK(days[0].date == "2026-03-02");
   CHECK(days[0].arrival == "23:30:00");
-  CHECK(days[0].departure == "00:00:00");
+  CHECK(days[0].departure == "24:00:00");  // the end of its day
   CHECK(days[0].figures.occupied_h == Approx(0.4));
   CHECK(days[1].figures.told_h == Approx(23.5));
   CHECK(days[1].figures.occupied_h == Approx(0.5 * (1.0 + 0.6 + 41 * 0.1 + 0.9)));
   CHECK(days[1].arrival == "00:30:00");
-  CHECK(days[1].departure == "00:00:00");
+  CHECK(days[1].departure == "24:00:00");
   CHECK(days[1].figures.most == 2);
-  CHECK_THAT(to_csv(days), contains(",23:30:00,14,00:00:00,0,1,0\n"));
+  CHECK_THAT(to_csv(days), contains(",23:30:00,14,24:00:00,0,1,0\n"));
   const std::vector<CountedHour> hours = counted_hours(counts);
   REQUIRE(hours.size() == 24);
   CHECK(hours[0].mean == Approx(0.75));
@@ -548,7 +548,32 @@ TEST_CASE("Days and hours of a counted log are what one sums up by hand, with ho
   CHECK(hours[23].nobody == Approx(0.5 * (0.2 + 0.5)));
   CHECK(hours[23].most == Approx(0.5 * (1.0 + 2.0)));
   counts.figures_off.reset();
-  CHECK_THAT(to_csv(counted_days(counts)), contains(",23:30:00,,00:00:00,,1,\n"));
+  CHECK_THAT(to_csv(counted_days(counts)), contains(",23:30:00,,24:00:00,,1,\n"));
+}
+
+TEST_CASE("A reading of half a minute at the edge of a counted log is no day of its own") {
+  const auto dates_of = [](double window_s, int first_reading, int n) {
+    LogCounts counts;
+    counts.rows.sensors = {"a"};
+    counts.rows.window_s = window_s;
+    counts.rows.clock = LogClock::local;
+    counts.estimates.n_counts = 2;
+    for (int i = first_reading; i < first_reading + n; ++i) {
+      const std::int64_t midnight = 1'772'496'000LL * 1'000'000;  // 2026-03-03
+      counts.rows.begin.push_back({midnight + i * std::llround(window_s * 1e6), 0});
+      counts.rows.motion.push_back(0), counts.rows.people.push_back(-1);
+      counts.estimates.probabilities.insert(counts.estimates.probabilities.end(), {0.0, 1.0});
+    }
+    std::vector<std::string> dates;
+    for (const CountedDay& day : counted_days(counts)) dates.push_back(day.date);
+    return dates;
+  };
+  using Dates = std::vector<std::string>;
+  CHECK(dates_of(30.0, -1, 2881) == Dates{"2026-03-03"});
+  CHECK(dates_of(30.0, -1, 2882) == Dates{"2026-03-03"});                // and one behind the next midnight
+  CHECK(dates_of(30.0, -2, 2882) == Dates{"2026-03-02", "2026-03-03"});  // a minute is told
+  CHECK(dates_of(1800.0, -1, 49) == Dates{"2026-03-02", "2026-03-03"});  // half an hour is a reading's worth
+  CHECK(dates_of(30.0, -1, 1) == Dates{"2026-03-02"});                   // all that there is
 }
 
 TEST_CASE("Errors of figures are those between what is told and what is so, larger where more is expected") {
