@@ -258,15 +258,18 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
   Judge judge(plain, *ensembles, settings.alpha, context);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);
   judge.sum_up(held_out, result);
-  const bool enough_signs =
-      plain.reference->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
-  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
-  result.refused = result.before.p <= settings.alpha;
-  result.closed = result.shrunk && result.refused && result.after.p > settings.alpha;
+  decide(result, plain.reference->shape.kind, settings.alpha);
   return result;
 }
 
 }  // namespace
+
+void decide(Verification& result, Measured::Kind kind, double alpha) {
+  const bool enough_signs = kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums say little a trial
+  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
+  result.refused = result.before.p <= alpha;
+  result.closed = result.shrunk && result.refused && result.after.p > alpha;
+}
 
 Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind) {
   constexpr std::size_t usual = 5;

@@ -47,6 +47,9 @@ using Folds = std::vector<std::vector<std::size_t>>;
 [[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
                                                const VerifySettings& settings, const Context& context);
 
+/// Whether the gap shrunk, and closed, by what was found on the held-out trials.
+void decide(Verification& result, Measured::Kind kind, double alpha);
+
 /// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.
 [[nodiscard]] Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind);
 /// Folds of about the same size over the given trials, from the data's digest alone: fixed before anything is named.

@@ -231,6 +231,37 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile][minutes][six-s
   CHECK_FALSE(few.shrunk);
 }
 
+TEST_CASE("a gap of sums shrinks only if chance has so many better trials in one of twenty cases", "[reconcile]") {
+  // So many of n are better with probability (n over k) / 2^n each.
+  const auto by_chance = [](int better, int n) {
+    double p = 0.0, ways = 1.0;
+    for (int worse = 0; worse <= n - better; ways = ways * (n - worse) / (worse + 1), ++worse) p += ways;
+    return p / std::ldexp(1.0, n);
+  };
+  const auto is_shrunk = [&](int better, int n, Measured::Kind kind) {
+    Verification found;
+    found.gain = {0.1, 0.2};
+    found.placebo = 2.0;
+    found.after.energy_score = 1.0;
+    found.sign_p = stats::sign_test_greater(static_cast<std::size_t>(better), static_cast<std::size_t>(n - better));
+    CHECK(found.sign_p == Approx(by_chance(better, n)));
+    decide(found, kind, 0.05);
+    return found.shrunk;
+  };
+  int n_lenient = 0;
+  for (int n = 1; n <= 24; ++n) {
+    for (int better = 0; better <= n; ++better) {
+      CAPTURE(n, better);
+      CHECK(is_shrunk(better, n, Measured::Kind::sums) == (by_chance(better, n) <= 0.05));
+      CHECK(is_shrunk(better, n, Measured::Kind::series));  // of series each trial says much
+      n_lenient += by_chance(better, n) > 0.05 && by_chance(better, n) <= 0.15 ? 1 : 0;
+    }
+  }
+  CHECK(n_lenient > 20);  // cases that another level would tell from these: 8 of 10, 4 of 4
+  CHECK_FALSE(is_shrunk(8, 10, Measured::Kind::sums));
+  CHECK(is_shrunk(9, 10, Measured::Kind::sums));
+}
+
 TEST_CASE("a holdout is a share drawn by the data or names of trials", "[reconcile]") {
   const StudyFrame frame{{"S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10"}, {"PIR1"}, {}, 1.0};
   const auto data = [](const std::string& text, std::size_t n_trials) {
