@@ -147,6 +147,7 @@ struct LightCosts {
   double known_days = 0.0;
   double hours = 0.0;  ///< that count: of rows in which all of its sensors are known
   double unknown_h = 0.0;
+  double asleep_h = 0.0;    ///< in which everybody there sleeps or goes to bed, who wants no light: not occupied
   double occupied_h = 0.0;  ///< NaN, as the next one, if the rows have no people
   double span_h = 0.0;      ///< from a day's first person to its last: who switches by hand, and not between
   double power_w = 0.0;
@@ -171,8 +172,12 @@ struct Advice {
   Ground ground = Ground::nobody_came;
   std::optional<double> delay_min{};  ///< of the first two
   std::string sentence;               ///< which delay to take and what it costs, or why that can't be told
+  /// Of too_few_days: the part of the sentence that says how many days would do, and the sentence without it.
+  std::string doubt{}, rest{};
 };
 [[nodiscard]] Advice advise(const LightCosts& light);
+/// A sentence a light; a doubt that several share is in the first of them alone.
+[[nodiscard]] std::vector<std::string> advise_all(std::span<const LightCosts> lights);
 
 struct Costs {
   std::string rule;

@@ -216,7 +216,8 @@ def control(result: Result, rule: PathOr | Mapping[str, Any] | None = None, *,
         "sensors": list(result.sensors), "areas": list(result.areas), "doors": list(result.doors),
         "window_s": float(result.time[0]) if len(result.time) else 1.0,
         "clock": [] if result.clock is None else np.datetime_as_string(result.clock[run, second], unit="s").tolist(),
-        "run": run.astype(np.int32),
+        "run": run.astype(np.int32), "phases": list(result.phases),
+        "phase_code": result.phase_code[run, second].astype(np.int32),
         "time_s": np.ascontiguousarray(result.time[second], dtype=np.float64)}
     rows.update((name, np.ascontiguousarray(getattr(result, name)[run, second], dtype=of)) for name, of in (
         ("people", np.int32), ("people_of_areas", np.int32), ("door_open", np.uint8), ("bits", np.uint8)))

@@ -376,6 +376,8 @@ struct ControlRows {
         clock(nb::cast<std::vector<std::string>>(rows["clock"])),
         run(nb::cast<People>(rows["run"])),
         people(nb::cast<People>(rows["people"])),
+        phases(nb::cast<std::vector<std::string>>(rows["phases"])),
+        phase_code(nb::cast<People>(rows["phase_code"])),
         time_s(nb::cast<Array<double, 1>>(rows["time_s"])),
         people_of_areas(nb::cast<Array<std::int32_t, 2>>(rows["people_of_areas"])),
         door_open(nb::cast<Bits>(rows["door_open"])),
@@ -386,6 +388,7 @@ struct ControlRows {
     row.replicate = run(i);
     row.time_s = time_s(i);
     if (!clock.empty()) row.clock = clock[i];
+    row.phase = phases[static_cast<std::size_t>(phase_code(i))];
     row.people = people(i);
     copy_row(people_of_areas, i, row.people_of_areas);
     copy_row(door_open, i, row.doors);
@@ -396,6 +399,8 @@ struct ControlRows {
   double window_s;
   std::vector<std::string> clock;  ///< local time at each row's end, since 1970; empty: none
   People run, people;
+  std::vector<std::string> phases;
+  People phase_code;  ///< index into `phases`
   Array<double, 1> time_s;
   Array<std::int32_t, 2> people_of_areas;
   Bits door_open, bits;

@@ -228,6 +228,14 @@ void tell_what_is_written(const RunOptions& options, const TableOutput& rows, st
   tell_written(files, verbosity);
 }
 
+/// Pets are nobody, so that no count has them.
+void tell_of_pets(const Model& model, const RunOptions& options, Verbosity verbosity) {
+  const std::vector<TrialSpec>& trials = model.script().trials;
+  if (options.occupants.empty() || trials.empty() || verbosity == Verbosity::quiet) return;
+  for (const PetSpec& pet : trials.front().pets)
+    std::cerr << "--occupants: without the " << pet.id << "; `pirsim check` says which sensors see it\n";
+}
+
 /// Of all these runs, nearly; 0 if runs end when everybody is done.
 double simulated_s(const Model& model, const RunRange& runs) {
   const std::vector<sim::TrialModel>& trials = model.compiled().trials();
@@ -372,6 +380,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   const TableOutput& rows = tables.rows();
   others.commit(rows.notes());
   tell_what_is_written(options, rows, done, inputs.verbosity);
+  tell_of_pets(model, options, inputs.verbosity);
   tell(rows.notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
     std::cerr << counted(done, "run") << ", " << counted(rows.rows(), "row") << " in " << progress.seconds() << " s\n";

@@ -39,7 +39,7 @@ class Room {
       const about = node.userData.pirsim;
       if (about && about.type === "beams") {
         this.beams[this.run.sensors.findIndex((sensor) => sensor.id === about.sensor)] = node;
-        node.material = new three.LineBasicMaterial({ color: colour("beam"), transparent: true, opacity: 0.35 });
+        node.material = new three.LineBasicMaterial({ color: colour("beam"), transparent: true, opacity: 0.15 });
         node.visible = false;
       } else if (about && about.type === "body_part") {
         node.material = new three.MeshLambertMaterial({ color: node.material.color.clone() });
@@ -110,7 +110,7 @@ class Room {
       });
     });
     this.lit = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial(
-      { color: colour("lit"), transparent: true, opacity: 0.55 }));
+      { color: colour("lit"), transparent: true, opacity: 0.3 }));
     this.lit.geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(6 * total), 3));
     this.lit.frustumCulled = false;
     this.scene.add(this.lit);

@@ -317,7 +317,11 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   out << "  seats at rest\n";
   for (const SensorSight& sight : report.sensors) {
     line(sight.sensor, sight.rays, sight.rays_cut, fixed(sight.longest_m, 2), fixed(percent(sight.places), 1));
-    out << "  " << (sight.sees_nothing() ? "sees NOBODY" : named(sight.seats, scene.seats.size())) << '\n';
+    out << "  "
+        << (sight.is_beam          ? "a beam: on while somebody or a leaf is in it"
+            : sight.sees_nothing() ? "sees NOBODY"
+                                   : named(sight.seats, scene.seats.size()))
+        << '\n';
   }
   line("any sensor", "", "", "", fixed(percent(report.places_seen_by_any), 1));
   out << '\n';
@@ -330,6 +334,22 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   if (std::ranges::none_of(scene.meshes, is_floor)) {
     out << "  no ray ends at the floor: it has no mesh that occludes, only an outline\n";
   }
+}
+
+/// A line for each pet and sensor.
+void print_pets(std::ostream& out, const Model& model) {
+  const std::vector<SensorSpec>& sensors = model.scene().sensors;
+  const std::vector<PetSight> pets = watch_pets(model);
+  if (pets.empty() || sensors.empty()) return;
+  out << "pets: each alone for a day, all doors open\n";
+  for (const auto& [pet, passes, seen] : pets) {
+    out << "  " << pet << ": " << counted(passes, "pass", "passes") << " of 1 m or more\n";
+    for (std::size_t i = 0; i < sensors.size() && passes > 0; ++i) {
+      out << "    " << sensors[i].id << " sees the " << pet << " in "
+          << fixed(100.0 * static_cast<double>(seen[i]) / static_cast<double>(passes), 0) << " of 100 of its passes\n";
+    }
+  }
+  out << '\n';
 }
 
 /// A line for each sensor that is deaf to any seat.
@@ -505,6 +525,7 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
     print_occupancy(out, *script.trials.front().occupancy, model.compiled().trials().front());
   if (!script.begin.empty() && !script.trials.empty()) print_times(out, model.compiled().trials().front());
   print(out, report.sight, scene);
+  print_pets(out, model);
   print(out, report.work, in_words(worker), model);
 }
 

@@ -15,6 +15,7 @@
 #include "model/core/text.hpp"
 #include "model/schema/check_scene.hpp"
 #include "model/schema/clock.hpp"
+#include "model/schema/words.hpp"
 #include "pirsim/control.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/random.hpp"
@@ -52,6 +53,7 @@ enum class DayKind { run, date };
 struct DaySums {
   DayKind kind = DayKind::run;
   std::int32_t all = 0, rows = 0, unknown = 0, occupied = 0;  ///< all: by daylight too; rows: that count
+  std::int32_t asleep = 0;                                    ///< with people all of whom sleep or go to bed
   std::int32_t first_occupied = -1, last_occupied = -1;       ///< of the rows that count; -1: nobody came
   std::vector<DelaySums> by_delay;
   [[nodiscard]] std::int32_t span() const { return first_occupied < 0 ? 0 : last_occupied - first_occupied + 1; }
@@ -221,7 +223,8 @@ class Light {
       begin();
       return 0;
     }
-    const auto [cue, is_known] = cue_of(row, people);
+    const bool is_asleep = people > 0 && sleep_all(row.phase, spec_.area);
+    const auto [cue, is_known] = cue_of(row, is_asleep ? 0 : people);
     gap_rows_ = is_known ? 0 : gap_rows_ + 1;
     if (!is_known || people < 0) {
       ++day.unknown;
@@ -229,6 +232,7 @@ class Light {
       return unknown_bit;
     }
     ++day.rows;
+    day.asleep += is_asleep ? 1 : 0;
     if (cue.occupied) {
       ++day.occupied;
       if (day.first_occupied < 0) day.first_occupied = day.rows;
@@ -423,6 +427,7 @@ LightCosts Light::costs(People people) const {
   std::vector<const DaySums*> days;  // that tell something
   for (const DaySums& day : days_) {
     costs.unknown_h += day.unknown * row_h;
+    costs.asleep_h += day.asleep * row_h;
     if (day.rows > 0) days.push_back(&day);
   }
   costs.days = static_cast<std::int64_t>(days.size());
@@ -560,20 +565,23 @@ std::string shown(const LightCosts& light, const DelayCosts& at) {
          dark_all_the_same(at);
 }
 
-std::string best_guess(const LightCosts& light, const DelayCosts& at) {
+std::string too_few_days(const LightCosts& light) {
   const double enough = std::ceil(days_a_week / light.at_most_a_week * most_expected(0.0));
-  const std::string seen = light.people == People::expected ? fixed(at.false_offs, 1) + " false-offs expected"
-                           : at.false_offs == 0.0           ? "no false-off"
-                                                  : counted(static_cast<std::size_t>(at.false_offs), "false-off");
   const double days = std::round(10.0 * light.known_days) / 10.0;
   const std::string data = days < 1.0    ? hours(24.0 * light.known_days) + " is too little"
                            : days == 1.0 ? "1 day is too little"
                                          : shortest_number(days) + " days are too few";
   return data + " to tell which delay goes off on somebody " + allowed(light) + ": " + fixed(enough, 0) +
-         " days without a false-off would do. The best guess is " + minutes(at) + ": " + seen + " in " +
-         hours(light.occupied_h) + " of occupied time, which shows less than one in " +
-         hours(light.occupied_h / most_expected(at.false_offs)) + " (95 %), and " + empty_light(light, at) +
-         compared(light, at) + dark_all_the_same(at);
+         " days without a false-off would do.";
+}
+
+std::string best_guess(const LightCosts& light, const DelayCosts& at) {
+  const std::string seen = light.people == People::expected ? fixed(at.false_offs, 1) + " false-offs expected"
+                           : at.false_offs == 0.0           ? "no false-off"
+                                                  : counted(static_cast<std::size_t>(at.false_offs), "false-off");
+  return "best guess is " + minutes(at) + ": " + seen + " in " + hours(light.occupied_h) +
+         " of occupied time, which shows less than one in " + hours(light.occupied_h / most_expected(at.false_offs)) +
+         " (95 %), and " + empty_light(light, at) + compared(light, at) + dark_all_the_same(at);
 }
 
 std::string no_delay(const LightCosts& light) {
@@ -821,8 +829,21 @@ Advice advise(const LightCosts& light) {
   if (const DelayCosts* at = first(at_most_a_week))
     return {Ground::shown, at->delay_min, name + shown(light, *at) + counter};
   if (const DelayCosts* at = first(a_week))
-    return {Ground::too_few_days, at->delay_min, name + best_guess(light, *at) + counter};
+    return {Ground::too_few_days, at->delay_min,
+            name + too_few_days(light) + " The " + best_guess(light, *at) + counter, too_few_days(light),
+            name + "the " + best_guess(light, *at) + counter};
   return {Ground::no_delay, {}, name + no_delay(light) + counter};
+}
+
+std::vector<std::string> advise_all(std::span<const LightCosts> lights) {
+  std::vector<std::string> sentences, doubts;
+  for (const LightCosts& light : lights) {
+    const Advice advice = advise(light);
+    const bool is_said = std::ranges::find(doubts, advice.doubt) != doubts.end();
+    sentences.push_back(is_said && !advice.doubt.empty() ? advice.rest : advice.sentence);
+    doubts.push_back(advice.doubt);
+  }
+  return sentences;
 }
 
 std::string advised_rule(RuleSpec rule, const Costs& costs) {
@@ -837,8 +858,8 @@ std::string advised_rule(RuleSpec rule, const Costs& costs) {
     YAML::Node written = io::written(light);
     if (light.door.empty()) written.remove("settle_s");  // it is a door's
     root["lights"].push_back(written);
-    text += "# " + advice.sentence + '\n';
   }
+  for (const std::string& sentence : advise_all(costs.lights)) text += "# " + sentence + '\n';
   return text + YAML::Dump(root) + '\n';
 }
 

@@ -50,7 +50,8 @@ constexpr Column<CostLine> costs_by_delay[]{
      of_delay<&DelayCosts::delay_min>},
     {{"days", Holds::count, "of the rows"}, [](const CostLine& line) -> Cell { return line.light.days; }},
     {info("hours", "in which all of its sensors are known", "h"), of_light<&LightCosts::hours>},
-    {info("occupied_h", "of them, with somebody there", "h"), of_light<&LightCosts::occupied_h>},
+    {info("occupied_h", "of them, with somebody there who doesn't sleep or go to bed", "h"),
+     of_light<&LightCosts::occupied_h>},
     {info("lit_h", "with light", "h"), of_delay<&DelayCosts::lit_h>},
     {info("lit_empty_h", "with light while nobody was there", "h"), of_delay<&DelayCosts::lit_empty_h>},
     {info("dark_h", "without light while somebody was there", "h"), of_delay<&DelayCosts::dark_h>},
@@ -248,7 +249,7 @@ io::ReportSection worst_section(const LightCosts& light, const std::string& view
 
 /// Of one light, or of several together, by their first delays.
 struct Sums {
-  double occupied_h = 0.0, dark_h = 0.0, lit_a_day = 0.0, empty_a_day = 0.0, false_offs = 0.0;
+  double occupied_h = 0.0, dark_h = 0.0, lit_a_day = 0.0, empty_a_day = 0.0, false_offs = 0.0, asleep_a_day = 0.0;
 
   void add(const LightCosts& light) {
     const DelayCosts& at = light.at(light.rule_delays_min.front());
@@ -256,6 +257,7 @@ struct Sums {
     dark_h += at.dark_h;
     lit_a_day += light.a_day(at.lit_h);
     empty_a_day += light.a_day(at.lit_empty_h);
+    asleep_a_day += light.a_day(light.asleep_h);
     false_offs += at.false_offs;
   }
   [[nodiscard]] double offs_an_hour() const { return false_offs / occupied_h; }
@@ -309,7 +311,10 @@ std::string finding_of(const Costs& costs) {
   }
   text += ". Somebody is in the dark for " + share(sums.dark_share()) + " of that time. Of " + lit_h +
           (is_one ? " lit hours" : " light-hours") + " a day, " + fixed(sums.empty_a_day, 2) + " are lit for nobody.";
-  return is_one ? text : text + worst_light(costs);
+  if (!is_one) text += worst_light(costs);
+  if (sums.asleep_a_day == 0.0) return text;
+  return text + " Who sleeps or goes to bed wants no light: " + fixed(sums.asleep_a_day, 1) +
+         (is_one ? " h" : " light-hours") + " a day in which all who are there do so count as hours of nobody.";
 }
 
 /// A row a light, and one of all.
@@ -471,7 +476,9 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
   for (const Issue& remark : costs.remarks) report.paragraphs.push_back(remark.message + ".");
   if (costs.lights.size() > 1 && know_people(costs))
     report.sections.push_back({"All lights", {}, {overview(costs)}, {}});
-  for (const LightCosts& light : costs.lights) {
+  const std::vector<std::string> sentences = advise_all(costs.lights);
+  for (std::size_t i = 0; i < costs.lights.size(); ++i) {
+    const LightCosts& light = costs.lights[i];
     io::ReportSection section;
     section.heading = light.id;
     section.paragraphs = {
@@ -479,7 +486,7 @@ io::Report control_page(const Costs& costs, const LitDays& days, const std::stri
         ", " + fixed(light.hours, 1) + " hours" +
         (knows_people(light) ? ", of which " + fixed(light.occupied_h, 1) + " occupied" : "") +
         (light.unknown_h > 0.0 ? "; " + fixed(light.unknown_h, 1) + " more of which nothing is known" : "") + "."};
-    if (costs.lights.size() > 1) section.paragraphs.insert(section.paragraphs.begin(), advise(light).sentence);
+    if (costs.lights.size() > 1) section.paragraphs.insert(section.paragraphs.begin(), sentences[i]);
     section.tables.push_back(table_of(light));
     section.charts = charts_of(light);
 
@@ -512,7 +519,7 @@ std::string to_text(const Costs& costs) {
            << " of them empty\n";
     }
   }
-  for (const LightCosts& light : costs.lights) text << advise(light).sentence << '\n';
+  for (const std::string& sentence : advise_all(costs.lights)) text << sentence << '\n';
   return text.str();
 }
 

@@ -51,6 +51,9 @@ void require(const char* what, double value, const NumberRange& range) {
 std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std::string>& names) {
   std::vector<std::string> known;
   for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
+  const auto is_array = [&](const std::string& name) {
+    return std::ranges::find(model.scene().arrays, name, &SensorSpec::id) != model.scene().arrays.end();
+  };
   std::vector<std::size_t> indices;
   for (const std::string& name : names) {
     if (name == "none") continue;
@@ -60,6 +63,10 @@ std::vector<std::size_t> sensors_named(const Model& model, const std::vector<std
       indices.push_back(i);
       found = true;
     }
+    if (is_array(name))
+      throw Error(ErrorCode::usage, "beams: '" + name +
+                                        "' is a thermal array, which has no beams: `pirsim check` says " +
+                                        "what it sees, --frames writes its frames");
     if (!found)
       throw Error(ErrorCode::usage, "beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
   }

@@ -13,6 +13,7 @@
 #include "engine/rt/room.hpp"
 #include "model/core/error.hpp"
 #include "model/schema/check_scene.hpp"
+#include "model/schema/words.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/response.hpp"
@@ -28,17 +29,17 @@ constexpr std::size_t word_bits = 64;
 void set_bit(RowBits& bits, std::size_t row) { bits[row / word_bits] |= std::uint64_t{1} << (row % word_bits); }
 
 /// Without areas all people are in the only one.
-LightRun run_of(const RunResult& result, std::size_t n_areas, std::size_t n_sensors) {
+LightRun run_of(const RunResult& result, const std::vector<std::string>& areas, std::size_t n_sensors) {
   LightRun run;
   run.n_rows = result.samples.size();
   const RowBits nothing((run.n_rows + word_bits - 1) / word_bits, 0);
-  run.occupied.assign(n_areas, nothing);
+  run.occupied.assign(areas.size(), nothing);
   run.moved.assign(n_sensors, nothing);
   for (std::size_t row = 0; row < run.n_rows; ++row) {
     const Sample& sample = result.samples[row];
-    for (std::size_t area = 0; area < n_areas; ++area) {
-      if ((sample.people_of_areas.empty() ? sample.people : sample.people_of_areas[area]) > 0)
-        set_bit(run.occupied[area], row);
+    for (std::size_t area = 0; area < areas.size(); ++area) {
+      const int people = sample.people_of_areas.empty() ? sample.people : sample.people_of_areas[area];
+      if (people > 0 && !sleep_all(sample.phase, areas[area])) set_bit(run.occupied[area], row);
     }
     for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
       if (sample.bits[sensor] == 1) set_bit(run.moved[sensor], row);
@@ -285,7 +286,7 @@ LightRows light_rows(const SceneSpec& scene, const PlacementLightSpec& light, co
                                "the light's people: run " + std::to_string(result.replicate) + " of trial '" +
                                    result.trial + "' can't go on, and is left out: " + result.fault->message});
     } else {
-      rows.runs.push_back(run_of(result, rows.areas.size(), rows.sensors.size()));
+      rows.runs.push_back(run_of(result, rows.areas, rows.sensors.size()));
     }
     done(++n_done, model.n_runs());
   });

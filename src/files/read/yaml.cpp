@@ -585,6 +585,24 @@ void YamlMap::finish() const {
     }
     faults_->error(key.where, what_ + ": unknown key '" + key.name + "'" + meant);
   }
+  const bool is_root = !asked_.empty() && asked_.front().starts_with("pirsim_");
+  if (is_root) bring_home();
+}
+
+/// Says of keys that nothing knows where they stand that this map, a file's outermost, has such a key.
+void YamlMap::bring_home() const {
+  constexpr std::string_view unknown = ": unknown key '";
+  Diagnostics told;
+  for (const auto& [severity, where, message] : faults_->issues()) {
+    std::string text = message;
+    if (const std::size_t at = text.find(unknown); at != std::string::npos && text.substr(0, at) != what_) {
+      const std::string key = text.substr(at + unknown.size(), text.size() - at - unknown.size() - 1);
+      if (std::ranges::find(asked_, key) != asked_.end() && !has(key))
+        text += ": it belongs to the " + what_ + " itself, at the left margin";
+    }
+    severity == Severity::error ? told.error(where, text) : told.warning(where, text);
+  }
+  *faults_ = std::move(told);
 }
 
 std::string too_many(std::size_t most, const std::string& what) {

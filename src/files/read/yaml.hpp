@@ -179,6 +179,7 @@ class YamlMap {
  private:
   [[nodiscard]] std::optional<YamlNode> find(const std::string& key) const;
   void report_missing(const std::string& key) const;
+  void bring_home() const;
 
   YamlNode node_;
   Diagnostics* faults_;

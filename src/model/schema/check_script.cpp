@@ -46,6 +46,7 @@ std::vector<std::string> phases_of(const ScriptSpec& script) {
     if (trial.schedule || trial.occupancy) {
       for (const std::string_view use : {phase_empty, phase_occupied, phase_meeting, phase_cleaning})
         phases.emplace(use);
+      if (trial.schedule && trial.schedule->household) phases.emplace(phase_asleep);
       continue;
     }
     phases.emplace(phase_outside);

@@ -195,6 +195,9 @@ TEST_CASE("What can't be a household is refused with its place") {
   refused("  household: {residents: [{id: a}, {id: b}, {id: c}, {id: d}, {id: e}, {id: f}]}\n", "more than five");
   refused("  household: {residents: [{id: a}, {id: a}]}\n", "'a'");
   refused("  household: {residents: [{name: a}]}\n", "unknown key 'name'");
+  refused("  household: {pets: [{kind: cat}], residents: [{id: a}]}\n",
+          "household: unknown key 'pets': it belongs to the script itself, at the left margin");
+  refused("  pets: [{kind: cat}]\n  household: {residents: [{id: a}]}\n", "it belongs to the script itself");
   refused("  household: {residents: [{id: a, occupation: work}]}\n", "did you mean 'works'?");
   refused("  household: {residents: [{id: a, occupation: work_at_home}]}\n", "did you mean 'works_at_home'?");
   refused("  household: {residents: [{id: a, age_years: 3}]}\n", "age_years: expected");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "model/schema/clock.hpp"
 #include "pirsim/control.hpp"
@@ -144,4 +145,67 @@ TEST_CASE("the advised delay is long enough in 95 of 100 samples, of motion whos
   CHECK(a_week(23.0) > 1.0);
   CHECK(wrong <= 12);                   // 6 expected, standard error 2.4
   CHECK(sum / n_samples < 24.0 + 4.0);  // and isn't much too long
+}
+
+// -------------------------------------------------------------------------------------------- who sleeps
+
+namespace {
+
+/// Two areas with a sensor each: a night of an hour in which one or both sleep, then an hour in which both are up.
+Costs night_of(const std::string& phase_of_night) {
+  RuleSpec rule{"home", {}};
+  for (const std::string area : {"bedroom", "living"}) {
+    LightSpec light;
+    light.id = light.area = area;
+    light.sensors = {"PIR_" + area};
+    light.delays_min = {1.0};
+    rule.lights.push_back(light);
+  }
+  Control control(rule, {{"PIR_bedroom", "PIR_living"}, {"bedroom", "living"}, {}}, a_minute_s);
+  for (int i = 0; i < 120; ++i) {
+    Sample row = row_at(a_minute_s * (i + 1), 0, 2);
+    const bool is_night = i < 60;
+    // At night the sleeper stirs every ten minutes, which lights the bedroom.
+    row.bits = {static_cast<std::uint8_t>(is_night && i % 10 == 0 ? 1 : 0),
+                static_cast<std::uint8_t>(is_night ? 0 : 1)};
+    row.people_of_areas = is_night ? std::vector<int>{1, 1} : std::vector<int>{0, 2};
+    row.phase = is_night ? phase_of_night : "occupied";
+    control.add(row);
+  }
+  return control.finish();
+}
+
+}  // namespace
+
+TEST_CASE("who sleeps is nobody in the dark, and whoever is up elsewhere is") {
+  // Lit for two rows of ten, so the sleeper's light goes off six times an hour.
+  const auto bedroom = [](const Costs& costs) { return costs.lights[0]; };
+  const auto living = [](const Costs& costs) { return costs.lights[1]; };
+  for (const auto& [phase, bed_asleep, living_asleep] :
+       {std::tuple{"occupied", false, false}, std::tuple{"asleep in bedroom", true, false},
+        std::tuple{"asleep", true, true}, std::tuple{"asleep in bed", false, false},
+        std::tuple{"asleep in living + bedroom", true, true}, std::tuple{"asleep in attic + living", false, true}}) {
+    CAPTURE(phase);
+    const Costs costs = night_of(phase);
+    CHECK(bedroom(costs).occupied_h == Approx(bed_asleep ? 0.0 : 1.0).margin(1e-12));
+    CHECK(bedroom(costs).asleep_h == Approx(bed_asleep ? 1.0 : 0.0).margin(1e-12));
+    CHECK(bedroom(costs).at(1.0).false_offs == (bed_asleep ? 0.0 : 6.0));
+    CHECK(bedroom(costs).at(1.0).lit_empty_h == Approx(bed_asleep ? 0.2 : 0.0).margin(1e-12));
+    CHECK(living(costs).occupied_h == Approx(living_asleep ? 1.0 : 2.0));
+    CHECK(living(costs).at(1.0).dark_h == Approx(living_asleep ? 0.0 : 1.0).margin(1e-12));
+    const bool says_so = to_text(costs).find("Who sleeps or goes to bed wants no light") != std::string::npos;
+    CHECK(says_so == (bed_asleep || living_asleep));
+  }
+}
+
+TEST_CASE("that the days are too few is said once of lights that share it") {
+  LightCosts one = costs_of(7, {7}), other = one, third = costs_of(2, {7});
+  other.id = "door";
+  const std::vector<LightCosts> lights{one, other, third};
+  const std::vector<std::string> sentences = advise_all(lights);
+  REQUIRE(sentences.size() == 3);
+  CHECK(sentences[0] == advise(one).sentence);
+  CHECK_THAT(sentences[0], contains("7 days are too few"));
+  CHECK_THAT(sentences[1], contains("door: the best guess is 7 min") && !contains("too few"));
+  CHECK(sentences[2] == advise(third).sentence);  // of other days
 }

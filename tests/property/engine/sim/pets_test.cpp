@@ -13,6 +13,7 @@
 #include "support/catch.hpp"
 #include "support/door_scene.hpp"
 #include "support/shipped.hpp"
+#include "surveys/sight.hpp"
 
 using namespace pirsim;
 
@@ -303,4 +304,46 @@ TEST_CASE("runs with pets are the same in any number of threads and in any order
   CHECK_FALSE(std::equal(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n),
                          whole.begin() + static_cast<std::ptrdiff_t>(n),
                          whole.begin() + static_cast<std::ptrdiff_t>(2 * n)));
+}
+
+TEST_CASE("check says of how many passes of a pet a sensor reports motion, whatever it holds", "[people][seconds]") {
+  SceneSpec scene = rooms_with_door(DoorState::open);
+  ScriptSpec script = script_with_pet(PetKind::cat, 86400.0);
+  script.sensing.response = Response::zones;
+  // The same day as any run has it: a pass lasts from the first step behind a pause of half a second to the next.
+  const Model model = compile(scene, script);
+  State state(model, 0);
+  std::size_t passes = 0;
+  std::vector<std::size_t> seen(scene.sensors.size(), 0);
+  std::vector<std::uint8_t> now(scene.sensors.size(), 0);
+  double way_m = 0.0;
+  int still = 5;
+  Vec2 at(0.0);
+  for (bool first = true; !state.run_state().finished; first = false) {
+    step_tick(model, state);
+    const Vec2 next = state.run_state().crowd.actors().front().motion().position();
+    const double step_m = first ? 0.0 : glm::length(next - at);
+    at = next;
+    if (still >= 5 && step_m > 0.0) way_m = 0.0, still = 0, now.assign(now.size(), 0);
+    if (still >= 5) continue;
+    way_m += step_m;
+    still = step_m > 0.0 ? 0 : still + 1;
+    for (std::size_t i = 0; i < now.size(); ++i) now[i] |= state.run_state().triggers[i];
+    if (still < 5 || way_m < 1.0) continue;
+    ++passes;
+    for (std::size_t i = 0; i < now.size(); ++i) seen[i] += now[i];
+  }
+  REQUIRE(passes > 30);
+  const studies::PetSight sight_of = studies::watch_pets(model).front();
+  CHECK(sight_of.pet == "pet");
+  CHECK(sight_of.passes == passes);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    CAPTURE(i, seen[i], sight_of.seen[i]);  // the first step of a pass may be all that a run has seen of it
+    CHECK(sight_of.seen[i] <= seen[i]);
+    CHECK(sight_of.seen[i] + 2 >= seen[i]);
+  }
+  CHECK(std::ranges::max(seen) > passes / 10);
+  for (auto& [id, sensor] : scene.sensor_models) sensor.detector.report.hold_s = 600.0;
+  CHECK(studies::watch_pets(compile(scene, script)).front().seen == sight_of.seen);
+  CHECK_THAT(check_study(model).text, contains("sees the pet in ") && contains(" of 100 of its passes"));
 }

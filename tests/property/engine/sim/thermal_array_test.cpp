@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -300,6 +301,68 @@ TEST_CASE("noise is normal, and of pixels, frames, runs and arrays of their own"
   const std::vector<float> shared = series(together.array, 0);
   for (std::size_t i = 0; i < n; ++i) REQUIRE(shared[i] == shared[i / 64 * 64]);
   CHECK(rms(shared) == Approx(1.0).epsilon(0.09));  // 0.5 K times the root of 4; 2.2 % is an error
+}
+
+TEST_CASE("an array put before another doesn't change its noise, another name does", "[sim][array]") {
+  ArraySpec spec = grid_eye(1);
+  spec.netd_k = spec.offset_k = 1.0;
+  const SceneSpec alone = before_a_wall(spec);
+  SceneSpec second = alone, renamed = alone;
+  second.arrays.insert(second.arrays.begin(), alone.arrays.front());
+  second.arrays.front().id = "before";
+  renamed.arrays.front().id = "other";
+  const rt::Room room(alone.meshes);
+  const std::vector<double> celsius(64, room_c);
+  const auto frame = [&](const SceneSpec& scene, std::size_t index) {
+    std::vector<float> frame(64);
+    const sim::ThermalArray array(scene, index, sensing(), 1, room, {});
+    array.read(celsius, 3, 77, sim::ThermalArray::Pages::all, frame);
+    return frame;
+  };
+  CHECK(frame(second, 1) == frame(alone, 0));
+  CHECK(frame(second, 0) != frame(alone, 0));
+  CHECK(frame(renamed, 0) != frame(alone, 0));
+}
+
+TEST_CASE("files of frames have different names for different arrays, trials and replicates", "[sim][array]") {
+  const std::vector<std::string> names{"A",
+                                       "A_B",
+                                       "B_C",
+                                       "C",
+                                       "B",
+                                       "A_",
+                                       "_B",
+                                       "/",
+                                       "%2F",
+                                       "%",
+                                       "..",
+                                       ".",
+                                       "",
+                                       "a b",
+                                       "A_B_C",
+                                       "A%5FB",
+                                       "ä",
+                                       "*",
+                                       "\\",
+                                       ":",
+                                       std::string(300, 'x'),
+                                       std::string(301, 'x'),
+                                       std::string(300, 'x') + "y"};
+  std::map<std::string, std::array<std::string, 2>> files;
+  for (const std::string& array : names) {
+    for (const std::string& trial : names) {
+      for (const int replicate : {1, 11}) {
+        const std::string file = io::frame_file(array, trial, replicate);
+        CAPTURE(array, trial, file);
+        const auto [at, is_new] = files.emplace(file, std::array{array, trial + '/' + std::to_string(replicate)});
+        CHECK(is_new);
+        CHECK(std::filesystem::path(file).filename() == file);
+        CHECK(file.size() <= 255);
+      }
+    }
+  }
+  CHECK(io::frame_file("A1", "S3", 2) == "A1_S3_2.npy");
+  CHECK(io::frame_file("ARRAY1", "day_1", 2) == "ARRAY1_day_1_2.npy");
 }
 
 TEST_CASE("what a unit always adds has its sizes over units, and is the same in all runs", "[sim][array]") {
@@ -629,6 +692,8 @@ TEST_CASE("check doesn't warn of beams, which cross a door and not the floor", "
   const std::vector<Issue> told = studies::warnings(studies::look_around(model), model.scene());
   INFO((told.empty() ? "" : told.front().message));
   CHECK(told.empty());
+  const std::string text = check_study(model).text;
+  CHECK_THAT(text, contains("a beam: on while somebody or a leaf is in it") && !contains("NOBODY"));
 }
 
 TEST_CASE("all tracers break beams alike, and two abreast are one", "[sim][beam]") {
