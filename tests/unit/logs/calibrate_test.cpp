@@ -120,6 +120,20 @@ TEST_CASE("The check calls one in twenty of its own rooms unlike, and finds one 
   CHECK(found > attempts / 2);  // the twin
 }
 
+TEST_CASE("Statistics that nearly follow from each other are unlike where they don't, and not by a trifle") {
+  // Two of 60 rooms, alike but for .07 times their spread. Ridges of .02 to .2 of a variance give these answers; .005
+  // and .5 don't (computed with NumPy): then a trifle counts, or nothing does.
+  constexpr std::size_t rooms = 60;
+  stats::Matrix<double> rows(rooms, 2);
+  for (std::size_t r = 0; r < rooms; ++r) {
+    const double both = -1.7 + 3.4 * static_cast<double>(r) / (rooms - 1), apart = r % 2 == 0 ? 0.07 : -0.07;
+    rows.row(r)[0] = both + apart;
+    rows.row(r)[1] = both - apart;
+  }
+  CHECK(unlike_share(rows, std::vector{0.6, -0.6}) == Approx(1.0 / (rooms + 1)));
+  CHECK(unlike_share(rows, std::vector{0.2, -0.2}) > 0.1);
+}
+
 TEST_CASE("Weighted means, quantiles and ranks") {
   const std::vector<double> values{3, 1, 2, 5}, weights{1, 1, 2, 0};
   CHECK(weighted_mean(values, weights) == Approx(2.0));
