@@ -456,9 +456,9 @@ void LogWindows::each_run(const LogTrack& track, std::size_t first, std::size_t 
   if (!log_->has_readings() && known_us > grid_begin) tell({grid_begin, grid_begin, known_us, nothing});
   if (log_->has_readings() && known_us - interval > grid_begin)
     tell({grid_begin + 1, grid_begin, known_us - interval, nothing});
-  // The first run that may reach into these windows.
+  // The first run that may reach into these windows: of several changes at their very begin, all touch the first one.
   const std::int64_t begin_us = origin_us_ + lower * window_us_;
-  auto at = std::ranges::upper_bound(changes, begin_us, {}, &LogChange::us);
+  auto at = std::ranges::lower_bound(changes, begin_us, {}, &LogChange::us);
   if (at != changes.begin()) --at;
   for (; at != changes.end(); ++at) {
     const bool is_last = at + 1 == changes.end();

@@ -173,12 +173,11 @@ std::vector<LogChange> without(const std::vector<LogChange>& changes, const std:
 
 /// What is known from `from` on, and until `to`.
 std::vector<LogChange> clipped(std::vector<LogChange> changes, std::int64_t from_us, std::int64_t to_us) {
-  const auto first_after = std::ranges::upper_bound(changes, from_us, {}, &LogChange::us);
-  if (first_after != changes.begin()) {
-    const auto holds = first_after - 1;
-    holds->us = std::max(holds->us, from_us);
-    changes.erase(changes.begin(), holds);
-  }
+  // Several changes at from_us itself all stay, and end what held before.
+  auto first = std::ranges::lower_bound(changes, from_us, {}, &LogChange::us);
+  const bool holds_on = first != changes.begin() && (first == changes.end() || first->us > from_us);
+  if (holds_on) (--first)->us = from_us;
+  changes.erase(changes.begin(), first);
   changes.erase(std::ranges::lower_bound(changes, to_us, {}, &LogChange::us), changes.end());
   return changes;
 }

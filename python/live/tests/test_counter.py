@@ -1,30 +1,20 @@
 """Counting live: beside pirsim's own counter, bit for bit, through restarts, gaps and steps of the clock."""
 
+import csv
 import json
 import math
+import os
 import random
+import subprocess
+from datetime import datetime, timezone
 
 import pytest
+from counters import STEP_S, T0, random_counter
 
 from pirsim_live import ClockSteppedBack, Counter, Occupancy
 
 np = pytest.importorskip("numpy")
 counting = pytest.importorskip("pirsim.counting")
-STEP_S, T0 = 30.0, 1_772_409_600.0  # 2026-03-02, midnight
-
-
-def table(draw, rows, columns):
-    values = [[draw.uniform(0.05, 1) for _ in range(columns)] for _ in range(rows)]
-    return [value / sum(row) for row in values for value in row]
-
-
-def random_counter(draw, sensors=3, counts=3, modes=2, rooms=4):
-    n = counts * modes
-    return {"pirsim_counter": 2, "step_s": STEP_S, "sensors": sensors, "counts": counts, "modes": modes,
-            "rooms": [{"room": r, "first": table(draw, 1, n), "moves": table(draw, n, n),
-                       "versions": [{"liveliness": odds, "weight": 1 / (2 * rooms), "emissions": table(draw, n, sensors + 1)}
-                                    for odds in (0.5, 1.0)]} for r in range(rooms)]}
-
 
 @pytest.fixture
 def made(tmp_path):
@@ -52,7 +42,10 @@ def bits_of(events, sensors, n):
     """[reading, sensor], said anew: by what each stretch of a state touches."""
     bits = np.full((n, len(sensors)), 0, dtype=np.uint8)
     for k, sensor in enumerate(sensors):
-        own = [(T0, None)] + [(at, state) for at, name, state in events if name == sensor]
+        own = [(T0, None)]
+        for at, name, state in events:
+            if name == sensor and state is not own[-1][1]:  # said again: no change
+                own.append((at, state))
         ends = [at for at, _ in own[1:]] + [T0 + n * STEP_S]
         rank = [0] * n
         for (begin, state), end in zip(own, ends):
@@ -96,6 +89,36 @@ def test_counts_are_those_of_pirsim_bit_for_bit(seed, made):
     assert not np.array_equal(counting.load(file).estimate(bits, smoothed=False).probabilities[20], live[20].probabilities)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_changes_at_a_readings_very_edge_are_those_of_the_command(seed, tmp_path):
+    """Several at one moment, at the first and last one too, as `pirsim count --forward` reads them from a log of events."""
+    if "PIRSIM" not in os.environ:
+        pytest.skip("PIRSIM names the command")
+    draw = random.Random(seed)
+    told = random_counter(draw, sensors=1 + seed % 3)
+    names = told["sensor_names"] = [f"sensor_{i + 1}" for i in range(told["sensors"])]
+    (tmp_path / "counter.json").write_text(json.dumps(told))
+    events = [(T0, name, draw.random() < 0.5) for name in names]
+    for name in names:
+        at = 0.0
+        while at < 3600:
+            moment = STEP_S * round(at / STEP_S) if draw.random() < 0.6 else round(at, 1)
+            events += [(T0 + moment, name, draw.random() < 0.5) for _ in range(draw.choice((1, 1, 2, 3)))]
+            at += draw.expovariate(1 / 60)
+    events.sort(key=lambda event: event[0])
+    rows = [f"{datetime.fromtimestamp(at, timezone.utc):%Y-%m-%dT%H:%M:%S.%f}Z,{name},{'on' if state else 'off'}"
+            for at, name, state in events]
+    (tmp_path / "log.csv").write_text("\n".join(["time,sensor,state", *rows]) + "\n")
+    done = subprocess.run([os.environ["PIRSIM"], "count", tmp_path / "counter.json", "--log", tmp_path / "log.csv",
+                           "--forward", "-q"], capture_output=True, text=True, check=True)
+    counter, live = Counter(tmp_path / "counter.json"), []
+    for at, name, state in events:
+        live += counter.update(at, {name: state})
+    live += counter.forget(events[-1][0] + 1e-6) + counter.update(events[-1][0] + STEP_S)  # a log ends behind its last event
+    expected = [[row[f"p{n}"] for n in range(3)] for row in csv.DictReader(done.stdout.splitlines())]
+    assert len(expected) > 100 and [[f"{p:.3f}" for p in one.probabilities] for one in live[:len(expected)]] == expected
+
+
 def test_a_restart_is_a_gap_of_what_nobody_knows(made):
     draw = random.Random(7)
     file = made(draw)
@@ -112,8 +135,9 @@ def test_a_restart_is_a_gap_of_what_nobody_knows(made):
     live += counter.update(T0 + STEP_S * 80)
     bits[29] = 2  # it was under way
     same(live, counting.load(file).estimate(bits, smoothed=False).probabilities)
-    with pytest.raises(ValueError, match="another counter"):
-        Counter(random_counter(draw, counts=4)).restore(saved)
+    for other in (random_counter(draw, counts=4), random_counter(draw)):  # the second one is of the same shape
+        with pytest.raises(ValueError, match="another counter"):
+            Counter(other).restore(saved)
 
 
 def test_nothing_is_told_once_nothing_has_been_known_for_five_minutes(made):
@@ -151,6 +175,6 @@ def test_occupancy_begins_with_motion_and_ends_when_nobody_is_probably_there():
         return Estimate(0.0, None if p_nobody is None else 0, p_nobody, (), p_nobody is not None, moved)
     occupancy = Occupancy(0.9)
     told = [occupancy.update(estimate(*one)) for one in
-            ((0.95,), (0.5,), (0.2, True), (0.89,), (0.9,), (0.3,), (None,), (0.3,), (0.95,))]
-    assert told == [False, False, True, True, False, False, None, True, False]
+            ((0.5,), (0.95,), (0.5,), (0.2, True), (0.89,), (0.9,), (0.3,), (None,), (0.3,), (0.95,), (0.1, True), (None,), (0.1,))]
+    assert told == [None, False, False, True, True, False, False, None, None, False, True, None, None]
     assert occupancy.motion() and occupancy.is_on

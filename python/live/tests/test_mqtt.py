@@ -1,6 +1,8 @@
 """The bridge with a real broker: what it hears is what pirsim counts, through all that happens to messages."""
 
+import csv
 import json
+import os
 import pathlib
 import random
 import shutil
@@ -11,7 +13,8 @@ import time
 import types
 
 import pytest
-from test_counter import STEP_S, T0, bits_of, made, random_counter, same  # noqa: F401
+from counters import STEP_S, T0, random_counter
+from test_counter import bits_of, made, same  # noqa: F401
 
 np = pytest.importorskip("numpy")
 counting = pytest.importorskip("pirsim.counting")
@@ -33,7 +36,7 @@ def test_messages(payload, key, state):
 
 @pytest.mark.parametrize("options, told", [
     (["--name", "a b"], "--name"), (["--off-at", "90"], "off_at"), (["--state", "nowhere/x"], "--state"),
-    (["--ca", "ca.pem"], "--tls"), (["--tls", "--ca", "ca.pem"], "no file 'ca.pem'"), (["--password-file", "p"], "--user"),
+    (["--port", "99999"], "--port"), (["--port", "0"], "--port"), (["--off-at", "nan"], "off_at"), (["--ca", "ca.pem"], "--tls"), (["--tls", "--ca", "ca.pem"], "no file 'ca.pem'"), (["--password-file", "p"], "--user"),
     (["--counter", "nonsense.json"], "nonsense.json: isn't a counter"), (["--sensor", "a=t", "--sensor", "b=t"], "one topic")])
 def test_faults_are_told_before_anything_is_connected(options, told, tmp_path):
     two = random_counter(random.Random(1), 2) | {"sensor_names": ["a", "b"]}
@@ -59,23 +62,56 @@ def test_sensors_that_say_nothing_or_no_word_of_motion_are_told(made, caplog):  
     assert "nothing was heard of sensor_2:" in caplog.text
 
 
-@pytest.mark.parametrize("state, texts", [
-    (True, "1 1.0 1,0 +1 01 1e0 1. .1e1 \tON\n Motion"), (False, "0 0.0 0,00 -0 00 0e5 .0 OFF No"),
-    (None, "2 -1 0.5 1_0 0x1 1e400 ١ 1,0,0 1.0.0 1e - inf nan " + 25 * "0" + " on. \u212aon")])
-def test_words_and_numbers_are_read_as_in_logs(state, texts):
-    for text in texts.split(" "):
-        assert state_of(text.encode()) is state, text
+TEXTS = {True: "1 1.0 1,0 +1 01 1e0 1. .1e1 ON Motion", False: "0 0.0 0,00 -0 00 0e5 .0 OFF No",
+         None: "2 -1 0.5 1_0 0x1 1e400 \u0661 1,0,0 1.0.0 1e inf nan ++1 on. \u212aon " + 25 * "0"}
+
+
+@pytest.mark.parametrize("state", TEXTS)
+def test_words_and_numbers_are_states(state):
+    for text in TEXTS[state].split():
+        assert state_of(text.encode()) is state_of(f"\t{text}\n".encode()) is state, text
         assert state_of(json.dumps({"motion": text}).encode()) is state, text
     for word in {True: words.ON, False: words.OFF, None: words.UNKNOWN}[state]:
         assert state_of(word.encode()) is state_of(word.upper().encode()) is state, word
 
 
-def test_json_without_a_state_says_nothing_and_topics_are_told_apart():
-    with pytest.raises(KeyError):
-        state_of(b'{"battery": 97}')
-    assert Source.of("hall=zigbee2mqtt/hall") == Source("hall", "zigbee2mqtt/hall")
-    assert Source.of("hall=a/b:pir") == Source("hall", "a/b", "pir")
-    for wrong in ("hall", "=a", "hall=", "hall=a/#", "hall=a:"):
+@pytest.mark.skipif("PIRSIM" not in os.environ, reason="PIRSIM names the command")
+def test_words_and_numbers_are_read_as_the_command_reads_logs(tmp_path):
+    """A log of a sensor a text: it goes on and off, then says the text at the begin of a window."""
+    known = [word for table in (words.ON, words.OFF, words.UNKNOWN) for word in table if word]
+    texts = [text for texts in TEXTS.values() for text in texts.split()] + known
+    rows = [(60 * i + k / 10, f"pir_{k}", "on" if i % 2 else "off") for k in range(len(texts)) for i in range(100)]
+    rows += [(6000, f"pir_{k}", text) for k, text in enumerate(texts)] + [(6090, "pir_0", "off")]
+    (tmp_path / "log.csv").write_text("time_s;sensor;state\n" + "".join(f"{at};{sensor};{text}\n" for at, sensor, text in sorted(rows)))
+    subprocess.run([os.environ["PIRSIM"], "log", tmp_path / "log.csv", "--step", "30", "-o", tmp_path / "rows.csv"], check=True,
+                   capture_output=True)
+    with open(tmp_path / "rows.csv") as file:
+        [row] = [row for row in csv.DictReader(file) if float(row["time_s"]) == 6030]
+    told = {text: {"1": True, "0": False, "": None}[row[f"pir_{k}"]] for k, text in enumerate(texts)}
+    assert told == {text: state_of(text.encode()) for text in texts}
+
+
+@pytest.mark.parametrize("key, message, state", [
+    ("Switch1.Action", {"Switch1": {"Action": "ON"}}, True), ("Switch1.Action", {"Switch1.Action": "OFF"}, False),
+    ("a.b.c", {"a": {"b": {"c": 1.0}}}, True), (None, {"id": 0, "state": False}, False), ("a", {"a": {"b": True}}, None),
+    ("a.b", {"a": 1}, KeyError), ("a.b", {"a": {"c": 1}}, KeyError), ("a", {}, KeyError), (None, {"battery": 97}, KeyError)])
+def test_keys_are_steps_into_json_which_may_say_nothing_of_motion(key, message, state):
+    payload = json.dumps(message).encode()
+    if state is KeyError:
+        with pytest.raises(KeyError):
+            state_of(payload, key)
+    else:
+        assert state_of(payload, key) is state
+
+
+def test_topics_are_told_from_keys():
+    for text, source in {"hall=zigbee2mqtt/hall": ("zigbee2mqtt/hall", None), "hall=a/b:pir": ("a/b", "pir"),
+                         "hall=shelly-aa/status/input:0": ("shelly-aa/status/input:0", None),
+                         "hall=shelly-aa/status/input:0:state": ("shelly-aa/status/input:0", "state"),
+                         "hall=tele/SENSOR:Switch1.Action": ("tele/SENSOR", "Switch1.Action"),
+                         "hall=a4:c1/motion": ("a4:c1/motion", None)}.items():
+        assert Source.of(text) == Source("hall", *source)
+    for wrong in ("hall", "=a", "hall=", "hall=a/#", "hall=a:", "hall=:a"):
         with pytest.raises(ValueError):
             Source.of(wrong)
 
@@ -158,7 +194,13 @@ class House:
         raise AssertionError("nothing came")
 
     def go_to(self, at, step=0.0):
-        self.now, self.ticks = at, self.ticks + at - self.now - step
+        """step: so much of it by the clock alone."""
+        until = self.ticks + at - self.now - step
+        while self.ticks < until:
+            wait = min(240.0, until - self.ticks)
+            self.now, self.ticks = self.now + wait, self.ticks + wait
+            self.bridge._update()
+        self.now, self.ticks = at, until
         self.bridge._update()
 
     def say(self, sensor, payload, times=1, retain=False):
@@ -180,6 +222,7 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
     file = made(draw, sensors=2)
     house = House(broker, file, tmp_path)
     names, known, at = house.counter.sensors, [], T0  # known: (time, sensor, state) as the bridge may know them
+    begun, ended = [0], []  # readings with which counting begins anew, and before which it did
     for _ in range(240 * days):
         at = round(at + draw.expovariate(days * 240 / (days * 86400 - 3600)), 3)
         house.go_to(at)
@@ -199,9 +242,11 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
             house.connect()
             house.sensors.reconnect()
         elif happens < 0.03:  # the clock steps: an hour that never was
+            ended.append(int((at - T0) // STEP_S))
             at += 3600
             house.go_to(at, step=3600)
-            known += [(at - 3600, name, None) for name in names]
+            begun.append(int((at - T0) // STEP_S))
+            known += [(T0 + STEP_S * begun[-1], name, None) for name in names]
         elif happens < 0.06:  # a message that the broker keeps for whoever comes later, and is older than that
             house.say(sensor, "ON", retain=True)
             house.say(sensor, "OFF")
@@ -216,16 +261,21 @@ def test_days_with_restarts_lost_and_doubled_messages_and_steps_of_the_clock_are
             wanted += 1
             house.until(lambda: house.heard >= wanted)
             known.append((at, sensor, None))  # an empty message says nothing
+        elif happens < 0.08:  # what no sensor says
+            house.say(sensor, draw.choice([b"[" * 100_000, b"\xff\x00", b"9" * 5000, '{"occupancy": NaN}']))
+            known.append((at, sensor, None))
         else:
             house.say(sensor, draw.choice(["ON", '{"occupancy": true}'] if state else ["OFF", '{"occupancy": false}']),
                       times=2 if draw.random() < 0.1 else 1)
             known.append((at, sensor, state))
     n = int((at - T0) // STEP_S) + 1
     house.go_to(T0 + n * STEP_S)
-    assert [one.time for one in house.told] == [T0 + STEP_S * (i + 1) for i in range(n)]
+    parts = list(zip(begun, [*ended, n]))
+    assert [one.time for one in house.told] == [T0 + STEP_S * (i + 1) for begin, end in parts for i in range(begin, end)]
     bits = bits_of(known, names, n)
-    assert 0.02 < (bits == 2).mean() < 0.9 and (bits == 1).sum() > 20
-    same(house.told, counting.load(file).estimate(bits, smoothed=False).probabilities)
+    assert 0.02 < (bits == 2).mean() < 0.9 and (bits == 1).sum() > 20 and len(parts) > 1
+    pirsims = counting.load(file)
+    same(house.told, np.concatenate([pirsims.estimate(bits[begin:end], smoothed=False).probabilities for begin, end in parts]))
     house.stop()
 
 
@@ -315,3 +365,21 @@ def test_the_command_counts_with_a_password_and_goes_on_after_the_broker_did(mad
         result = subprocess.run([sys.executable, "-m", "pirsim_live", *wrong], capture_output=True, text=True)
         assert result.returncode == code and result.stderr.startswith("error: "), result
     assert pathlib.Path(word[2]).exists()
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl to make a certificate")
+@pytest.mark.parametrize("trusts", [True, False])
+def test_a_broker_with_another_certificate_is_refused(trusts, made, tmp_path):  # noqa: F811
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-subj", "/CN=127.0.0.1", "-addext",
+                    "subjectAltName=IP:127.0.0.1", "-keyout", tmp_path / "key.pem", "-out", tmp_path / "ca.pem"],
+                   check=True, capture_output=True)
+    broker = Broker(tmp_path, "allow_anonymous true", f"certfile {tmp_path / 'ca.pem'}", f"keyfile {tmp_path / 'key.pem'}")
+    bridge = subprocess.Popen([sys.executable, "-m", "pirsim_live", "mqtt", "--counter", made(random.Random(5), sensors=1), "--broker",
+                               "127.0.0.1", "--port", str(broker.port), "--sensor", "sensor_1=hall", "--tls",
+                               *(["--ca", tmp_path / "ca.pem"] if trusts else [])], stderr=subprocess.PIPE, text=True)
+    line = bridge.stderr.readline()
+    assert line.startswith("connected: ") if trusts else "certificate verify failed" in line, line
+    bridge.terminate()
+    assert bridge.wait(10) == 0
+    bridge.stderr.close()
+    broker.stop()

@@ -121,16 +121,20 @@ TEST_CASE("windows of events are what their definition says, in whatever order t
   }
 }
 
-TEST_CASE("a part of the windows is that part of all") {
+TEST_CASE("a part of the windows is that part of all, also where several changes come at its very begin") {
   std::string text = "time,sensor,state\n";
   std::mt19937 random(9);
   for (int i = 0; i < 400; ++i)
-    text += std::to_string(i * 3) + ",S" + std::to_string(random() % 3) + (random() % 2 == 0 ? ",on\n" : ",off\n");
-  const Log log = read_log_text(text);
+    text += std::to_string(i / 3 * 4) + ",S" + std::to_string(random() % 3) + (random() % 2 == 0 ? ",on\n" : ",off\n");
+  LogMap map;
+  map.form = LogMap::Form::events;
+  map.sensor_column = "sensor";
+  map.state_column = "state";
+  const Log log = read_log_text(text, map);
   const LogWindows windows(log, 4.0);
   const LogRows all = windows.rows();
-  for (std::size_t first = 0; first < windows.size(); first += 37) {
-    const LogRows part = windows.rows(first, 37);
+  for (std::size_t first = 0; first < windows.size(); first += 5) {
+    const LogRows part = windows.rows(first, 5);
     for (std::size_t i = 0; i < part.n_windows(); ++i) {
       CHECK(part.begin[i] == all.begin[first + i]);
       for (std::size_t sensor = 0; sensor < 3; ++sensor) REQUIRE(part.at(i, sensor) == all.at(first + i, sensor));
@@ -246,6 +250,13 @@ TEST_CASE("from, to, a clock that is late, and stamps that tell where readings b
       "time,sensor,state\n2025-04-06T18:00:00,A,off\n2025-04-06T18:00:01,A,on\n2025-04-06T18:00:04,A,off\n2025-04-"
       "06T18:00:09,A,on\n";
   CHECK(windows_of(read_log_text(told, events), 1.0) == Texts{"110"});
+  events.from = "2025-04-06T18:00:04";
+  CHECK(windows_of(read_log_text(told, events), 1.0) == Texts{"0"});
+  const std::string at_once = "2025-04-06T18:00:04,A,on\n2025-04-06T18:00:04,A,off\n2025-04-06T18:00:09,A,on\n";
+  CHECK(windows_of(read_log_text(told.substr(0, told.find("2025-04-06T18:00:04")) + at_once, events), 1.0) ==
+        Texts{"0"});
+  CHECK(windows_of(read_log_text("time,sensor,state\n2025-04-06T18:00:01,A,off\n" + at_once, events), 1.0) ==
+        Texts{"1"});
 }
 
 TEST_CASE("silence beyond a stated length, and motion whose end isn't told") {

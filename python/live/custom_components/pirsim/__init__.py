@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import time
 from datetime import timedelta
 from typing import Any, Callable
 
@@ -13,11 +15,12 @@ from homeassistant.helpers.device_registry import DeviceInfo
 from homeassistant.helpers.event import async_track_state_change_event, async_track_time_interval
 from homeassistant.util import dt
 
-from .live import ClockSteppedBack, Counter, Occupancy
+from .live import Counter, LiveRoom
 
 DOMAIN = "pirsim"
 PLATFORMS = [Platform.BINARY_SENSOR, Platform.SENSOR]
 CONF_COUNTER, CONF_SENSORS, CONF_OFF_AT = "counter", "sensors", "off_at"
+_log = logging.getLogger(__name__)
 
 
 def _motion(state: State | None) -> bool | None:
@@ -28,7 +31,8 @@ class Room:
     """One counter, the entities that it hears, and those that listen to it."""
 
     def __init__(self, hass: HomeAssistant, entry: ConfigEntry, counter: Counter) -> None:
-        self.counter, self.occupancy = counter, Occupancy(entry.data[CONF_OFF_AT])
+        self.live = LiveRoom(counter, entry.data[CONF_OFF_AT], clock=lambda: dt.utcnow().timestamp(),
+                             monotonic=lambda: time.monotonic())
         self.device = DeviceInfo(identifiers={(DOMAIN, entry.entry_id)}, name=entry.title, manufacturer="pirsim")
         self._hass, self._listeners = hass, set[Callable[[], None]]()
         self._sensor_of = {entity: sensor for sensor, entity in entry.data[CONF_SENSORS].items()}
@@ -38,7 +42,15 @@ class Room:
         """Begins to hear; what is returned ends that."""
         self._update({sensor: _motion(self._hass.states.get(entity)) for entity, sensor in self._sensor_of.items()})
         return [async_track_state_change_event(self._hass, list(self._sensor_of), self._changed),
-                async_track_time_interval(self._hass, self._tick, timedelta(seconds=min(1.0, self.counter.step_s)))]
+                async_track_time_interval(self._hass, self._tick, timedelta(seconds=1))]
+
+    def restore(self, state: Any) -> None:
+        """Goes on from before a restart; counts the readings in between, so call it beside the event loop."""
+        try:
+            self.live.restore(state)
+            self.live.update()
+        except ValueError as fault:
+            _log.warning("%s: begins anew: %s", self.device["name"], fault)
 
     @callback
     def listen(self, listener: Callable[[], None]) -> Callable[[], None]:
@@ -47,38 +59,17 @@ class Room:
 
     @callback
     def _changed(self, event: Event[Any]) -> None:
-        sensor, state = self._sensor_of[event.data["entity_id"]], _motion(event.data["new_state"])
-        self._update({sensor: state})
-        if state and not self.occupancy.is_on:
-            self.occupancy.motion()
-            self._tell()
+        self._update({self._sensor_of[event.data["entity_id"]]: _motion(event.data["new_state"])})
 
     @callback
     def _tick(self, _now: Any) -> None:
-        if dt.utcnow().timestamp() >= self.counter.next_end:
-            self._update({})
+        self._update()
 
     @callback
-    def _update(self, states: dict[str, bool | None]) -> None:
-        now = dt.utcnow().timestamp()
-        try:
-            ended = self.counter.update(now, states)
-        except ClockSteppedBack:
-            if self.counter.time - now > self.counter.step_s:
-                self.counter.reset()
-                now_known = {sensor: _motion(self._hass.states.get(entity)) for entity, sensor in self._sensor_of.items()}
-                ended = self.counter.update(now, {**now_known, **states})
-            else:
-                ended = self.counter.update(self.counter.time, states)
-        for estimate in ended:
-            self.occupancy.update(estimate)
-        if ended:
-            self._tell()
-
-    @callback
-    def _tell(self) -> None:
-        for listener in list(self._listeners):
-            listener()
+    def _update(self, states: dict[str, bool | None] | None = None) -> None:
+        if self.live.update(states):
+            for listener in list(self._listeners):
+                listener()
 
 
 async def async_setup_entry(hass: HomeAssistant, entry: ConfigEntry) -> bool:

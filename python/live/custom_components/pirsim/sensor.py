@@ -20,7 +20,7 @@ class People(RoomEntity, SensorEntity):
 
     @property
     def native_value(self) -> int | None:
-        last = self._room.counter.last
+        last = self._room.live.counter.last
         return last.people if last else None
 
 
@@ -30,5 +30,5 @@ class Nobody(RoomEntity, SensorEntity):
 
     @property
     def native_value(self) -> float | None:
-        last = self._room.counter.last
+        last = self._room.live.counter.last
         return round(100 * last.p_nobody, 1) if last and last.p_nobody is not None else None

@@ -30,7 +30,8 @@ def _options() -> argparse.ArgumentParser:
     mqtt.add_argument("--broker", metavar="HOST", required=True)
     mqtt.add_argument("--port", metavar="N", type=int, help="default: 1883, or 8883 with --tls")
     mqtt.add_argument("--sensor", metavar="SENSOR=TOPIC[:KEY]", action="append", default=[],
-                      help="of each sensor of the counter; KEY of JSON messages (default: occupancy, presence, motion, state)")
+                      help="of each sensor of the counter; KEY of JSON messages, as state or Switch1.Action (default: occupancy, "
+                           "presence, motion, state)")
     mqtt.add_argument("--name", default="pirsim", help="of the device, and in its topics; default: %(default)s")
     mqtt.add_argument("--off-at", metavar="P", type=float, default=0.9,
                       help="occupancy ends at this P(nobody); default: %(default)g")
@@ -38,7 +39,7 @@ def _options() -> argparse.ArgumentParser:
     mqtt.add_argument("--password-file", metavar="FILE", help="its first line is the password")
     mqtt.add_argument("--tls", action="store_true", help="the broker's certificate must be valid")
     mqtt.add_argument("--ca", metavar="FILE", help="with --tls: of who signed it (default: the system's)")
-    mqtt.add_argument("--state", metavar="FILE", help="keeps what is known over restarts")
+    mqtt.add_argument("--state", metavar="FILE", help="keeps beliefs and occupancy over restarts")
     return parser
 
 
@@ -46,7 +47,8 @@ def _check(options: argparse.Namespace) -> None:
     """Before anything is connected. Raises ValueError."""
     faults = [
         (not re.fullmatch("[A-Za-z0-9_-]+", options.name), "--name: letters, digits, - and _ alone: Home Assistant asks for that"),
-        (options.password_file is not None and options.user is None, "--password-file: of which --user?"),
+        (options.port is not None and not 0 < options.port < 65536, "--port: from 1 to 65535"),
+        (options.password_file is not None and options.user is None, "--password-file needs --user"),
         (options.ca is not None and not options.tls, "--ca goes with --tls"),
         (options.ca is not None and not os.path.isfile(options.ca), f"--ca: there is no file {options.ca!r}"),
         (options.state is not None and not os.path.isdir(os.path.dirname(os.path.abspath(options.state))),

@@ -5,16 +5,20 @@ Pure Python, bit for bit what `pirsim count --forward` computes. What a counter 
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import os
+import sys
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Union
 
 LONGEST_GUESS_S = 300.0
-"""Once nothing has been known for longer, no count is told."""
+"""Once nothing has been known for longer, no count is given."""
 LONGEST_GAP_S = 6 * 3600.0
 """After a longer one a counter begins anew: nothing of what it knew is left by then (assumed; 1 to 24 h)."""
+
+_MOST_BYTES = 200_000_000
 
 Time = float
 """Seconds since 1970, UTC."""
@@ -23,7 +27,7 @@ State = Optional[bool]
 
 
 class ClockSteppedBack(ValueError):
-    """The time is before what the counter was told last."""
+    """The time is before that of the last update()."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class Estimate:
     """The least number that as many or fewer have even odds of; None: nothing has been known for five minutes."""
     p_nobody: float | None
     probabilities: tuple[float, ...]
-    """Of 0, 1, ... people; empty where none is told."""
+    """Of 0, 1, ... people; empty where no count is given."""
     known: bool
     """Something was known of a sensor in the reading."""
     moved: bool
@@ -64,52 +68,113 @@ def _sum(values: Iterable[float]) -> float:
     return total
 
 
-def _split(values: list[float], n: int) -> list[list[float]]:
-    if not values or len(values) % n:
-        raise ValueError("a table has another size than its counts ask for")
-    return [values[i:i + n] for i in range(0, len(values), n)]
+# What a file may hold: the rules of src/logs/counter.cpp, whose verdict tests/test_refusals.py compares.
+
+_FIGURES = ("occupied_h", "arrival_min", "departure_min", "most", "hour_nobody", "hour_mean", "hour_most")
 
 
-def _models(told: Mapping[str, Any]) -> list[_Model]:
-    if told.get("pirsim_counter") != 2 or "model" in told:
+def _number(value: Any, what: str, least: float = -sys.float_info.max, most: float = sys.float_info.max) -> float:
+    """A finite number. Raises ValueError; so do all of these."""
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not least <= value <= most:
+        raise ValueError(f"{what}: expected a number from {least:g} to {most:g}, got {value if is_number else type(value).__name__}")
+    return float(value)
+
+
+def _whole(value: Any, what: str, least: int, most: int) -> int:
+    if not isinstance(value, int):
+        raise ValueError(f"{what}: expected a whole number, got a {type(value).__name__}")
+    return int(_number(value, what, least, most))
+
+
+def _list(value: Any, what: str, length: int | None = None) -> list[Any]:
+    if not isinstance(value, list) or length not in (None, len(value)):
+        raise ValueError(f"{what}: expected a list{'' if length is None else f' of {length}'}")
+    return value
+
+
+def _member(told: Any, key: str) -> Any:
+    if not isinstance(told, Mapping) or key not in told:
+        raise ValueError(f"{key} is missing")
+    return told[key]
+
+
+def _text(value: Any, what: str) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{what}: expected text")
+    return value
+
+
+def _probabilities(values: Any, what: str, rows: int, columns: int, least: float = 0.0) -> list[list[float]]:
+    """Rows that add up to 1."""
+    flat = [_number(value, what, least, 1) for value in _list(values, what, rows * columns)]
+    table = [flat[i:i + columns] for i in range(0, len(flat), columns)]
+    if any(abs(_sum(row) - 1) > 1e-6 for row in table):
+        raise ValueError(f"{what}: probabilities don't add up to 1")
+    return table
+
+
+def _parsed(file: str | os.PathLike[str]) -> Any:
+    """As pirsim reads JSON: without NaN, and a whole number that is too long for 64 bits is any other number."""
+    with open(file, "rb") as opened:
+        return json.loads(opened.read(_MOST_BYTES).decode(), parse_int=lambda text: (int if len(text) < 20 else float)(text))
+
+
+def _models(told: Any) -> list[_Model]:
+    version = _member(told, "pirsim_counter")
+    if isinstance(version, bool) or version != 2 or "model" in told:
         raise ValueError("expected a counter of version 2, as pirsim calibrate writes it")
-    n, n_symbols = told["counts"] * told["modes"], told["sensors"] + 1
+    _number(_member(told, "step_s"), "step_s", 1e-3, 86400)
+    n = _whole(_member(told, "counts"), "counts", 2, 1000) * _whole(_member(told, "modes"), "modes", 1, 100)
+    n_sensors = _whole(_member(told, "sensors"), "sensors", 1, 1000)
     models = []
-    for room in told["rooms"]:
-        moves = _split(room["moves"], n)
-        for version in room["versions"]:
-            model = _Model(version["weight"], room["first"], [list(column) for column in zip(*moves)],
-                           _split(version["emissions"], n_symbols))
-            if not len(model.first) == len(moves) == len(model.emissions) == n:
-                raise ValueError("a table has another size than its counts ask for")
-            models.append(model)
-    if not models or abs(_sum(model.weight for model in models) - 1) > 1e-6:
+    for room in _list(_member(told, "rooms"), "rooms"):
+        _whole(_member(room, "room"), "room", 0, 10**9)
+        [first] = _probabilities(_member(room, "first"), "first", 1, n)
+        moves = [list(column) for column in zip(*_probabilities(_member(room, "moves"), "moves", n, n))]
+        for version in _list(_member(room, "versions"), "versions"):
+            _number(_member(version, "liveliness"), "liveliness", sys.float_info.min)
+            models.append(_Model(_number(_member(version, "weight"), "weight", 0), first, moves,
+                                 _probabilities(_member(version, "emissions"), "emissions", n, n_sensors + 1, 1e-100)))
+    if not abs(_sum(model.weight for model in models) - 1) < 1e-6:
         raise ValueError("the rooms' weights don't add up to 1")
+    pairs = [told["expected_error"]] if "expected_error" in told else []
+    if "figures_off" in told:
+        pairs += [_member(told["figures_off"], name) for name in _FIGURES]
+    for pair in pairs:
+        for value in _list(pair, "expected_error and figures_off", 2):
+            _number(value, "expected_error and figures_off")
+    _text(told.get("warning", ""), "warning")
+    names = [_text(name, "sensor_names") for name in _list(told.get("sensor_names", [""] * n_sensors), "sensor_names", n_sensors)]
+    if "sensor_names" in told and len(set(names)) < n_sensors:
+        raise ValueError("sensor_names: one is there twice")
+    for hold_s in _list(told.get("holds_s", [None] * n_sensors), "holds_s", n_sensors):
+        _number(0 if hold_s is None else hold_s, "holds_s", 0)
     return models
 
 
 class Counter:
     """Counts reading by reading. A reading is `step_s` seconds long and begins at a whole multiple of them since 1970.
 
-    `update()` tells what sensors say from a moment on; a reading has motion if a sensor had it at any time in it, none
-    if it was known throughout, and is unknown else. Until a sensor is told of, it is unknown. Not for several threads.
+    `update()` takes what sensors report from a moment on. A reading has motion if a sensor had it at any time in it, none
+    if it was known throughout, and is unknown otherwise. A sensor is unknown until it reports. Not for several threads.
     """
 
     def __init__(self, counter: Union[str, os.PathLike[str], Mapping[str, Any]]) -> None:
         """counter: a file, or what is in it. Raises OSError, and ValueError for what isn't a counter."""
         name = "" if isinstance(counter, Mapping) else f"{os.fspath(counter)}: "
         try:
-            if not isinstance(counter, Mapping):
-                with open(counter, encoding="utf-8") as file:
-                    counter = json.load(file)
-            self._models = _models(counter)
-        except (ValueError, KeyError, TypeError, AttributeError) as fault:
+            told = dict(counter) if isinstance(counter, Mapping) else _parsed(counter)
+            self._models = _models(told)
+            text = json.dumps(told, allow_nan=False, ensure_ascii=False)
+            self._digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+        except (ValueError, TypeError, RecursionError) as fault:
             raise ValueError(f"{name}isn't a counter of pirsim calibrate: {fault}") from fault
-        self.step_s = float(counter["step_s"])
-        self.n_counts, self._modes, n_sensors = counter["counts"], counter["modes"], counter["sensors"]
-        self.sensors: tuple[str, ...] = tuple(counter.get("sensor_names") or
-                                              (f"sensor_{i + 1}" for i in range(n_sensors)))
-        self.warning: str = counter.get("warning", "")
+        self.step_s = float(told["step_s"])
+        self.n_counts, self._modes = told["counts"], told["modes"]
+        self.sensors: tuple[str, ...] = tuple(told.get("sensor_names") or
+                                              (f"sensor_{i + 1}" for i in range(told["sensors"])))
+        self.warning: str = told.get("warning", "")
         """Why its counts can't be relied on: hardly a room of its recipe makes such a log. Or no text."""
         self.reset()
 
@@ -142,9 +207,11 @@ class Counter:
 
     def update(self, time: Time, states: Mapping[str, State] | None = None) -> list[Estimate]:
         """From `time` on these sensors have these states, the others the ones that they had. Returns the readings that
-        have ended since the last call. Raises ClockSteppedBack, and KeyError for sensors that the counter hasn't."""
+        have ended since the last call. Raises ClockSteppedBack, ValueError for a time that is none, and KeyError for
+        sensors that the counter hasn't."""
+        _number(time, "time")
         if time < self._time:
-            raise ClockSteppedBack(f"{self._time - time:.3f} s before what was told last")
+            raise ClockSteppedBack(f"{self._time - time:.3f} s before the last update")
         if unknown := set(states or {}) - set(self.sensors):
             raise KeyError(f"no sensor is called {', '.join(sorted(unknown))}; there are {', '.join(self.sensors)}")
         reading = math.floor(time / self.step_s)
@@ -161,6 +228,8 @@ class Counter:
             self._begin(self._reading + 1)
         self._time = time
         for sensor, state in (states or {}).items():
+            if state is self._states[sensor]:  # no change: at a reading's begin it would end what came before
+                continue
             if time == reading * self.step_s and self._since.get(sensor) != time:  # what it was before isn't of this one
                 self._doubtful.discard(sensor)
                 self._moved.discard(sensor)
@@ -172,25 +241,30 @@ class Counter:
         return ended
 
     def forget(self, time: Time) -> list[Estimate]:
-        """From `time` on nothing is known of any sensor until it is told of again: a connection was lost. As update()."""
+        """From `time` on nothing is known of any sensor until it reports again: a connection was lost. As update()."""
         return self.update(time, dict.fromkeys(self.sensors))
 
     def state(self) -> dict[str, Any]:
         """What restore() takes, as JSON can hold it."""
-        return {"time": self._time, "reading": self._reading, "beliefs": self._beliefs,
-                "unknown_s": None if math.isinf(self._unknown_s) else self._unknown_s, "models": len(self._models)}
+        return {"counter": self._digest, "time": None if self._reading is None else self._time, "beliefs": self._beliefs,
+                "unknown_s": None if math.isinf(self._unknown_s) else self._unknown_s}
 
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Goes on where state() was taken: since then nothing is known. Raises ValueError for one of another counter."""
-        n = self.n_counts * self._modes
-        beliefs = [[float(p) for p in belief] for belief in state["beliefs"]]
-        if state["models"] != len(self._models) or any(len(belief) != n for belief in beliefs) or (
-                beliefs and len(beliefs) != len(self._models)):
+    def restore(self, state: Any) -> None:
+        """Goes on where state() was taken: since then nothing is known. Raises ValueError for what isn't a state of this
+        counter, and is unchanged then."""
+        if _member(state, "counter") != self._digest:
             raise ValueError("the state is that of another counter")
+        time, unknown_s, n = _member(state, "time"), _member(state, "unknown_s"), self.n_counts * self._modes
+        beliefs = [row for belief in _list(_member(state, "beliefs"), "beliefs")
+                   for row in _probabilities(belief, "beliefs", 1, n)]
+        if len(beliefs) not in (0, len(self._models)):
+            raise ValueError("beliefs: there are more or fewer than models")
+        time = None if time is None else _number(time, "time", 0, 1e11)
+        unknown_s = math.inf if unknown_s is None else _number(unknown_s, "unknown_s", 0)
         self.reset()
-        self._beliefs, self._reading = beliefs, state["reading"]
-        self._time = -math.inf if self._reading is None else state["time"]
-        self._unknown_s = math.inf if state["unknown_s"] is None else state["unknown_s"]
+        self._beliefs, self._unknown_s = beliefs, unknown_s
+        if time is not None:
+            self._time, self._reading = time, math.floor(time / self.step_s)
 
     def _begin(self, reading: int) -> None:
         self._reading = reading
@@ -248,7 +322,9 @@ def _middle(counts: list[float]) -> int:
 
 
 class Occupancy:
-    """Somebody is there from a motion on, until P(nobody) reaches `off_at`: what `pirsim control --counter` weighs."""
+    """Somebody is there from a motion on, until P(nobody) reaches `off_at`: what `pirsim control --counter` weighs.
+
+    Motion alone begins it. Once no count is given, it is unknown until there is motion or P(nobody) is at `off_at`."""
 
     def __init__(self, off_at: float = 0.9) -> None:
         """off_at: P(nobody), 0 to 1. Raises ValueError."""
@@ -256,7 +332,7 @@ class Occupancy:
             raise ValueError(f"off_at: expected a probability, up to 1, got {off_at:g}")
         self.off_at = off_at
         self.is_on: bool | None = None
-        """None: not known yet."""
+        """None: unknown."""
 
     def update(self, estimate: Estimate) -> bool | None:
         """After one more reading."""
@@ -264,8 +340,8 @@ class Occupancy:
             self.is_on = True
         elif estimate.p_nobody is None:
             self.is_on = None
-        elif self.is_on is None or self.is_on:
-            self.is_on = estimate.p_nobody < self.off_at
+        elif estimate.p_nobody >= self.off_at:
+            self.is_on = False
         return self.is_on
 
     def motion(self) -> bool:

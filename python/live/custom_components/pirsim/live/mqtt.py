@@ -7,7 +7,6 @@ import logging
 import os
 import re
 import string
-import tempfile
 import time
 from dataclasses import dataclass
 from typing import Any, Callable, Iterable
@@ -15,13 +14,14 @@ from typing import Any, Callable, Iterable
 import paho.mqtt.client as paho
 
 from . import __version__, words
-from .counter import ClockSteppedBack, Counter, Occupancy, State
+from .counter import Counter, State
+from .room import LiveRoom
 
 _log = logging.getLogger("pirsim_live")
 _KEYS = ("occupancy", "presence", "motion", "state")
 _NUMBER = re.compile(r"[+-]?([0-9]+[.,]?[0-9]*|[.,][0-9]+)(e[+-]?[0-9]+)?")
 _SMALL = str.maketrans(string.ascii_uppercase, string.ascii_lowercase)
-_UNHEARD_S = 300.0  # after which a sensor is told that has said nothing; assumed (1-30 min)
+_UNHEARD_S = 300.0  # after which the log names the sensors that said nothing; assumed (1-30 min)
 
 
 def state_of_word(text: str) -> State:
@@ -32,15 +32,20 @@ def state_of_word(text: str) -> State:
 
 
 def state_of(payload: bytes, key: str | None = None) -> State:
-    """What a message says; None: unknown, as of any word that is no state. Of JSON the key, or the first of occupancy,
-    presence, motion and state. Raises KeyError for JSON that says nothing of it, such as a battery's."""
+    """What a message says; None: unknown, as of any word that is no state. Of JSON the key, `Switch1.Action` being Action
+    in Switch1, or the first of occupancy, presence, motion and state. Raises KeyError for JSON that says nothing of it,
+    such as a battery's."""
     text = payload.decode("utf-8", "replace").strip()
     try:
         told = json.loads(text)
     except ValueError:
         told = text
     if isinstance(told, dict):
-        told = told[key or next((one for one in _KEYS if one in told), _KEYS[0])]
+        key = key or next((one for one in _KEYS if one in told), _KEYS[0])
+        for step in [key] if key in told else key.split("."):
+            if not isinstance(told, dict):
+                raise KeyError(key)
+            told = told[step]
     return state_of_word(str(told))
 
 
@@ -55,9 +60,12 @@ class Source:
 
     @classmethod
     def of(cls, text: str) -> Source:
-        """SENSOR=TOPIC, or SENSOR=TOPIC:KEY. Raises ValueError."""
+        """SENSOR=TOPIC, or SENSOR=TOPIC:KEY; a number behind the last colon, as in Shelly's input:0, is part of the topic.
+        Raises ValueError."""
         sensor, equals, topic = text.partition("=")
-        topic, colon, key = topic.rpartition(":") if ":" in topic else (topic, "", "")
+        before, colon, key = topic.rpartition(":")
+        is_key = colon and not re.fullmatch("[0-9]+|.*/.*", key)
+        topic, colon, key = (before, colon, key) if is_key else (topic, "", "")
         if not (sensor and equals and topic) or (colon and not key) or set("#+") & set(topic):
             raise ValueError(f"expected SENSOR=TOPIC or SENSOR=TOPIC:KEY, got {text!r}")
         return cls(sensor, topic, key or None)
@@ -74,20 +82,20 @@ class Bridge:
         self._sources = list(sources)
         told = [source.sensor for source in self._sources]
         if sorted(told) != sorted(counter.sensors):
-            raise ValueError(f"the counter is for {', '.join(counter.sensors)}; topics are told of {', '.join(told) or 'none'}")
+            raise ValueError(f"the counter has the sensors {', '.join(counter.sensors)}; topics are given for {', '.join(told) or 'none'}")
         if len({(source.topic, source.key) for source in self._sources}) < len(self._sources):
             raise ValueError("two sensors have one topic")
+        self._room = LiveRoom(counter, off_at, clock=clock, monotonic=monotonic)
         self._counter, self._client, self._name, self._discovery = counter, client, name, discovery
-        self._occupancy = Occupancy(off_at)
         self._clock, self._monotonic = clock, monotonic
-        self._state_file, self._moments = state_file, (clock(), monotonic())
+        self._state_file, self._is_saved = state_file, True
         self._connected = False
         self._unheard, self._hears_since_s = set(told), monotonic()
         if state_file is not None and os.path.exists(state_file):
             try:
                 with open(state_file, encoding="utf-8") as file:
-                    counter.restore(json.load(file))
-            except (ValueError, KeyError, TypeError) as fault:
+                    self._room.restore(json.load(file))
+            except (OSError, ValueError, RecursionError) as fault:
                 _log.warning("%s: begins anew: %s", state_file, fault)
         client.will_set(self._topic("status"), "offline", qos=1, retain=True)
         client.on_connect, client.on_message, client.on_disconnect = self._greet, self._hear, self._lose
@@ -101,13 +109,13 @@ class Bridge:
         if reason.is_failure:
             _log.error("the broker refuses: %s", reason)
             return
-        self._connected = True
+        self._connected, self._hears_since_s = True, self._monotonic()
         self._forget()  # who knows what was missed
         for topic in sorted({source.topic for source in self._sources}):
             client.subscribe(topic, qos=1)
         client.publish(f"{self._discovery}/device/pirsim_{self._name}/config", json.dumps(self._device()), 1, True)
         client.publish(self._topic("status"), "online", 1, True)
-        _log.info("connected: %d sensors, told on %s", len(self._sources), self._topic("state"))
+        _log.info("connected: %d sensors, counts are on %s", len(self._sources), self._topic("state"))
         self._tell()
 
     def _lose(self, _client: paho.Client, *_: Any) -> None:
@@ -119,20 +127,25 @@ class Bridge:
     def _hear(self, _client: paho.Client, _data: Any, message: paho.MQTTMessage) -> None:
         if message.retain:  # of who knows when
             return
-        for source in self._sources:
-            if source.topic != message.topic:
-                continue
-            try:
-                state = state_of(message.payload, source.key)
-            except KeyError:
-                continue
-            if state is None and source.sensor in self._unheard:
-                _log.warning("%s: %s says %r, which is neither motion nor none", source.sensor, source.topic, message.payload[:60])
-            self._unheard.discard(source.sensor)
-            self._update({source.sensor: state})
-            if state and self._occupancy.is_on is not True:
-                self._occupancy.motion()
-                self._tell()
+        try:
+            for source in self._sources:
+                if source.topic == message.topic:
+                    self._take(source, message.payload)
+        except Exception as fault:  # whatever it is, the next message is heard
+            _log.warning("a message can't be taken: %s: %s", type(fault).__name__, str(fault)[:200])
+
+    def _take(self, source: Source, payload: bytes) -> None:
+        try:
+            state = state_of(payload, source.key)
+        except KeyError:
+            return
+        except RecursionError:
+            _log.warning("%s: %s says JSON that is too deep: unknown", source.sensor, source.topic)
+            state = None
+        if state is None and source.sensor in self._unheard:
+            _log.warning("%s: %s says %r, which is neither motion nor none", source.sensor, source.topic, payload[:60])
+        self._unheard.discard(source.sensor)
+        self._update({source.sensor: state})
 
     # -- the counter ---------------------------------------------------------------------------------------------------
 
@@ -140,42 +153,34 @@ class Bridge:
         self._update(dict.fromkeys(self._counter.sensors))
 
     def _update(self, states: dict[str, State] | None = None) -> None:
-        now, ticks = self._clock(), self._monotonic()
-        stepped = (now - self._moments[0]) - (ticks - self._moments[1])
-        self._moments = now, ticks
-        if abs(stepped) > self._counter.step_s:
-            _log.warning("the clock stepped by %.0f s: nothing is known of the sensors", stepped)
-            if stepped < 0:
-                self._counter.reset()
-            else:
-                self._counter.forget(max(now - stepped, self._counter.time))
-        try:
-            ended = self._counter.update(now, states)
-        except ClockSteppedBack:  # by less than a reading: at the moment before
-            ended = self._counter.update(self._counter.time, states)
-        for estimate in ended:
-            self._occupancy.update(estimate)
-        if ended:
+        if self._room.update(states):
             self._tell()
             self._save()
-            if self._connected and self._unheard and ticks > self._hears_since_s + _UNHEARD_S:
-                _log.warning("nothing was heard of %s: are the topics right?", ", ".join(sorted(self._unheard)))
-                self._unheard = set()
+        if self._connected and self._unheard and self._monotonic() > self._hears_since_s + _UNHEARD_S:
+            _log.warning("nothing was heard of %s: are the topics right?", ", ".join(sorted(self._unheard)))
+            self._unheard = set()
 
     def _save(self) -> None:
         if self._state_file is None:
             return
-        folder = os.path.dirname(os.path.abspath(self._state_file))
-        with tempfile.NamedTemporaryFile("w", dir=folder, delete=False, encoding="utf-8") as file:
-            json.dump(self._counter.state(), file)
-        os.replace(file.name, self._state_file)
+        made = f"{os.fspath(self._state_file)}.new"
+        try:
+            with open(made, "w", encoding="utf-8") as file:
+                json.dump(self._room.state(), file)
+            os.replace(made, self._state_file)
+        except OSError as fault:
+            if self._is_saved:
+                _log.warning("%s: can't be written, counting goes on: %s", self._state_file, fault)
+            self._is_saved = False
+        else:
+            self._is_saved = True
 
     # -- what it says --------------------------------------------------------------------------------------------------
 
     def _tell(self) -> None:
         if not self._connected:
             return
-        last, is_on = self._counter.last, self._occupancy.is_on
+        last, is_on = self._counter.last, self._room.occupancy.is_on
         told = {"people": last.people if last else None,
                 "nobody": round(100 * last.p_nobody, 1) if last and last.p_nobody is not None else None,
                 "occupancy": None if is_on is None else "ON" if is_on else "OFF"}
