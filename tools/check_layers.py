@@ -53,7 +53,7 @@ THIRD_PARTY = {
     "zstd": {"files"},
     "sqlite3": {"logs"},
     "OpenMesh": {"model/geom"},
-    "date": {"logs"},
+    "date": {"logs", "files"},
     "Random123": {"model/core"},
     "nlopt": {"surveys"},
     "Eigen": {"stats"},

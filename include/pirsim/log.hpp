@@ -43,6 +43,18 @@ struct LogMap {
     unknown,   ///< an empty cell tells that the state isn't known
     unchanged  ///< of rows of changes: it didn't change, as in series that were joined by time
   };
+  enum class Order { found, oldest_first, newest_first };  ///< of rows
+  enum class Files {
+    found,
+    parts,   ///< of one log
+    sensors  ///< each is one sensor's, which is called as the file is
+  };
+  /// What tells motion, besides the words that are known.
+  struct States {
+    std::vector<std::string> on, off;
+    std::optional<double> above;  ///< a number above it is motion, any other one none
+    bool operator==(const States&) const = default;
+  };
   enum class People {
     count,     ///< how many are there
     presence,  ///< 1 if anybody is
@@ -56,7 +68,7 @@ struct LogMap {
   };
   struct Sensor {
     std::string name;    ///< of the sensor in the scene
-    std::string in_log;  ///< its column or entity
+    std::string in_log;  ///< its column or entity; a sensor that was renamed has several entries of one name
     bool operator==(const Sensor&) const = default;
   };
 
@@ -66,8 +78,12 @@ struct LogMap {
   std::vector<std::string> time;  ///< a column, or those of date, time, and AM or PM or an offset; empty: found. Of
                                   ///< intervals their begin
   std::vector<std::string> end;   ///< of intervals, as `time`
-  std::string sensor_column;      ///< of events and intervals
-  std::string state_column;       ///< of events; intervals may have one
+  std::vector<std::string> sensor_column;  ///< of events and intervals: a column, or several that name it together
+  std::string state_column;                ///< of events; intervals may have one
+  States states;
+  Order order = Order::found;
+  Files files = Files::found;
+  std::string time_format;  ///< strptime's pattern, "%d.%m.%y %H.%M"; or of numbers seconds, excel_days, matlab_days
   /// IANA name: "Europe/Berlin". Stamps without an offset are local times there, others are told so. Empty: local times
   /// are taken as they are, and every day has 24 hours.
   std::string time_zone;

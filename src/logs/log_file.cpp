@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <utility>
 
 #include "logs/log_head.hpp"
@@ -47,16 +48,36 @@ std::optional<std::int64_t> esphome_time(std::string_view text) {
   return stamp && stamp->kind == Stamp::Kind::time_of_day ? std::optional(stamp->us) : std::nullopt;
 }
 
+std::optional<std::int64_t> console_time(std::string_view text) {
+  const auto stamp = parse_stamp(text.substr(0, text.find(' ')), LogMap::Dates::found);
+  return stamp && stamp->kind == Stamp::Kind::time_of_day ? std::optional(stamp->us) : std::nullopt;
+}
+
+/// Begins so: d is a digit, ? a T or a space.
+bool matches(std::string_view text, std::string_view pattern) {
+  const auto is_so = [](char c, char wanted) {
+    return wanted == 'd' ? c >= '0' && c <= '9' : wanted == '?' ? c == 'T' || c == ' ' : c == wanted;
+  };
+  return std::ranges::equal(text.substr(0, pattern.size()), pattern, is_so);
+}
+
+/// The first two words, and all that follows.
+std::array<std::string_view, 3> three_words(std::string_view text) {
+  std::array<std::string_view, 3> words;
+  for (std::string_view& word : words) {
+    word = text.substr(0, &word == &words.back() ? text.size() : text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+  }
+  return words;
+}
+
 bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 /// "2026-01-25 10:20:47" out of what stands before a message, with its fraction and its offset if it has them.
 std::string_view time_in(std::string_view text) {
   constexpr std::string_view pattern = "dddd-dd-dd?dd:dd:dd";
-  const auto matches = [](char c, char wanted) {
-    return wanted == 'd' ? c >= '0' && c <= '9' : wanted == '?' ? c == 'T' || c == ' ' : c == wanted;
-  };
   for (std::size_t at = 0; at + pattern.size() <= text.size(); ++at) {
-    if (!std::ranges::equal(text.substr(at, pattern.size()), pattern, matches)) continue;
+    if (!matches(text.substr(at), pattern)) continue;
     const std::string_view rest = text.substr(at + pattern.size());
     std::size_t more = std::min(rest.find_first_not_of(".0123456789Z"), rest.size());
     if (more < rest.size() && (rest[more] == '+' || rest[more] == '-'))
@@ -66,25 +87,10 @@ std::string_view time_in(std::string_view text) {
   return text.substr(std::min(text.find_first_not_of(' '), text.size()));  // which the timer refuses by name
 }
 
-std::string quoted_field(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + '"';
-}
-
 constexpr std::array<std::string_view, 3> properties{"occupancy", "presence", "motion"};
 
-/// The state that a value of JSON tells.
-std::string state_of(const nlohmann::json& value) {
-  if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
-  if (value.is_null()) return "unknown";
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
+constexpr std::size_t longest_document = 64'000'000;  // assumed: Home Assistant's history of 100 sensors and a month
 constexpr std::uint64_t most_faults = 1000;
 
 bool has_no_data(std::string_view line) { return line.find_first_not_of(" \t;,") == std::string_view::npos; }
@@ -103,29 +109,45 @@ bool is_comment(std::string_view line) {
   return true;
 }
 
-/// "sep=;" is for a spreadsheet, HOBO's "Plot Title: Room 12" for people.
-bool is_before_table(std::string_view line) {
-  return line.starts_with("sep=") || line.starts_with("Plot Title:") || line.starts_with("\"Plot Title:");
+/// How many fields a line has; 0 for what is no line of fields.
+std::size_t n_fields(const std::string& line, char separator) {
+  std::vector<std::string_view> fields;
+  std::vector<std::string> unquoted;
+  return split_fields(line, separator, fields, unquoted) ? fields.size() : 0;
+}
+
+/// "binary_sensor,entity_id=hall state="on",value=1 1772434844185564000", of InfluxDB.
+bool is_line_protocol(std::string_view line) {
+  const std::size_t space = line.find(' '), last = line.rfind(' ');
+  const auto stamp =
+      last == std::string_view::npos ? std::nullopt : parse_stamp(line.substr(last), LogMap::Dates::found);
+  return stamp && last > space && line.substr(space, last - space).find('=') != std::string_view::npos &&
+         stamp->number > 1e17;
 }
 
 /// What a log isn't, and what to do; empty if it may be a table.
 std::string_view what_is_no_table(std::string_view first) {
   if (first.starts_with('<')) return "XML or a page: save the log as CSV";
-  if (first.starts_with('{')) return "JSON: save the log as CSV";
+  if (is_line_protocol(first)) return "InfluxDB's line protocol: save a query's result as CSV";
   if (!first.starts_with('[')) return {};
+  return "lines of a text: those of openHAB, Zigbee2MQTT, ESPHome, Tasmota and FHEM are read";
+}
+/// An array or an object, and no "[08:37:08][D]".
+bool is_json(std::string_view first) {
   const std::size_t inner = first.find_first_not_of(" \t", 1);
-  if (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos)
-    return "JSON: save the log as CSV";
-  return "lines of a text: those of openHAB, Zigbee2MQTT and ESPHome are read";
+  return first.starts_with('{') ||
+         (first.starts_with('[') &&
+          (inner == std::string_view::npos || std::string_view("{[\"]").find(first[inner]) != std::string_view::npos));
 }
 
-/// Dashes below the names of columns, as UCI 271 has them.
+/// Dashes below the names of columns, or around them, as UCI 271 and psql have them.
 bool is_ruler(std::string_view line) {
-  return line.starts_with("---") && line.find_first_not_of("- \t") == std::string_view::npos;
+  return line.find("---") < 2 && line.find_first_not_of("-+| \t") == std::string_view::npos;
 }
 
 /// Columns that stand below each other, with a tab or two spaces between them, as fields with one tab.
 std::string with_tabs(std::string_view line) {
+  if (line.find('|') != std::string_view::npos) return std::string(line.substr(line.starts_with('|') ? 1 : 0));
   std::string result;
   for (std::size_t at = 0; at < line.size();) {
     const std::size_t end = std::min(line.find_first_not_of(" \t", at), line.size());
@@ -139,6 +161,14 @@ std::string with_tabs(std::string_view line) {
   return result;
 }
 
+/// Without folders and endings: "hall" of "logs/hall.csv.gz".
+std::string name_of_file(std::filesystem::path path) {
+  path = path.filename();
+  const std::filesystem::path packed = path.extension();
+  if (packed == ".gz" || packed == ".zst") path = path.stem();
+  return path.stem().string();
+}
+
 std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 }  // namespace
@@ -150,20 +180,19 @@ std::optional<TextLines::Writer> TextLines::writer_of(std::span<const HeadLine> 
     if (has(line.text, "] [openhab.") || has(line.text, "] [org.openhab.") || has(line.text, "StateChangedEvent"))
       return Writer::openhab;
     if (esphome_time(without_colours(line.text))) return Writer::esphome;
+    if (console_time(line.text) && (has(line.text, " MQT: ") || has(line.text, " RSL: "))) return Writer::tasmota;
+    if (matches(line.text, "dddd-dd-dd_dd:dd:dd ")) return Writer::fhem;
+    const auto [time, topic, payload] = three_words(line.text);
+    if (payload.starts_with('{') && has(topic, "/") && parse_stamp(time, LogMap::Dates::found))
+      return Writer::mosquitto;
   }
   return std::nullopt;
 }
 
 std::string_view TextLines::name() const {
-  switch (writer_) {
-    case Writer::openhab:
-      return "openHAB's log";
-    case Writer::zigbee2mqtt:
-      return "Zigbee2MQTT's log";
-    case Writer::esphome:
-      break;
-  }
-  return "ESPHome's log";
+  constexpr std::array<std::string_view, 6> names{"openHAB's log",       "Zigbee2MQTT's log", "ESPHome's log",
+                                                  "mosquitto_sub's log", "Tasmota's log",     "FHEM's log"};
+  return names[static_cast<std::size_t>(writer_)];
 }
 
 void TextLines::read(const HeadLine& line, std::vector<HeadLine>& rows, LogRemarks& remarks) {
@@ -180,6 +209,12 @@ TextLines::Changes TextLines::changes_in(std::string_view text, int line, LogRem
       return of_openhab(text);
     case Writer::zigbee2mqtt:
       return of_zigbee2mqtt(text);
+    case Writer::mosquitto:
+      return of_mosquitto(text);
+    case Writer::tasmota:
+      return of_tasmota(text, line, remarks);
+    case Writer::fhem:
+      return of_fhem(text);
     case Writer::esphome:
       break;
   }
@@ -205,15 +240,52 @@ TextLines::Changes TextLines::of_openhab(std::string_view text) {
   return {{std::string(before.substr(0, before.find(" ["))), std::string(name), std::string(state)}};
 }
 
-/// "... MQTT publish: topic 'zigbee2mqtt/hall', payload '{"occupancy":true}'": of the device's properties those that
-/// tell motion. With `output: attribute` each has a topic of its own. A device that is offline isn't known.
+/// "... MQTT publish: topic 'zigbee2mqtt/hall', payload '{"occupancy":true}'".
 TextLines::Changes TextLines::of_zigbee2mqtt(std::string_view text) {
   const auto topic = between(text, publishes, with_payload);
   if (!topic) return {};
-  const std::string time(time_in(text.substr(0, text.find(publishes))));
-  std::string_view payload = text.substr(text.find(with_payload) + with_payload.size());
-  payload = payload.substr(0, payload.rfind('\''));
-  std::string device(topic->substr(topic->find('/') + 1));  // without the base topic; npos + 1 is 0
+  const std::string_view payload = text.substr(text.find(with_payload) + with_payload.size());
+  return of_message(std::string(time_in(text.substr(0, text.find(publishes)))), *topic,
+                    payload.substr(0, payload.rfind('\'')));
+}
+
+/// What mosquitto_sub -F '%I %t %p' writes: time, topic and payload.
+TextLines::Changes TextLines::of_mosquitto(std::string_view text) {
+  const auto [time, topic, payload] = three_words(text);
+  return of_message(std::string(time), topic, payload);
+}
+
+/// "07:00:44 MQT: stat/hall/SWITCH1 = ON"; JSON says the same a second time.
+TextLines::Changes TextLines::of_tasmota(std::string_view text, int line, LogRemarks& remarks) {
+  const auto us = console_time(text);
+  if (!us) return {};
+  std::string time = since_first_midnight(*us, line, remarks);
+  const auto topic = between(text, has(text, " MQT: ") ? " MQT: " : " RSL: ", " = ");
+  if (!topic) return {};
+  std::string_view state = text.substr(text.find(" = ") + 3);
+  state = state.substr(0, state.find(' '));  // "(retained)"
+  if (state != "ON" && state != "OFF") return {};
+  std::string sensor(topic->substr(topic->find('/') + 1));
+  if (sensor.ends_with("/SWITCH1")) sensor.resize(sensor.rfind('/'));  // to which the sensor is wired, unlike POWER
+  return {{std::move(time), std::move(sensor), std::string(state)}};
+}
+
+/// "2026-03-02_07:00:44 hall_Bewegung motion: on": device, reading and value; without a reading it is the state.
+TextLines::Changes TextLines::of_fhem(std::string_view text) {
+  auto [time, device, value] = three_words(text);
+  std::string sensor(device);
+  if (const std::size_t colon = value.find(": "); colon < value.find(' ')) {
+    (sensor += '_') += value.substr(0, colon);
+    value.remove_prefix(colon + 2);
+  }
+  if (value.empty()) return {};
+  return {{std::string(time), std::move(sensor), std::string(trimmed(value))}};
+}
+
+/// Of the device's properties those that tell motion. With `output: attribute` each has a topic of its own. A device
+/// that is offline isn't known.
+TextLines::Changes TextLines::of_message(const std::string& time, std::string_view topic, std::string_view payload) {
+  std::string device(topic.substr(topic.find('/') + 1));  // without the base topic; npos + 1 is 0
   const nlohmann::json message = nlohmann::json::parse(payload, nullptr, false);
   const std::size_t slash = device.rfind('/');
   const std::string last = slash == std::string::npos ? std::string() : device.substr(slash + 1);
@@ -224,11 +296,11 @@ TextLines::Changes TextLines::of_zigbee2mqtt(std::string_view text) {
     for (const auto& [property, told] : told_[device]) states[property] = "unavailable";
   } else if (std::ranges::find(properties, last) != properties.end() && !message.is_object()) {
     device.resize(slash);
-    states[last] = message.is_discarded() ? std::string(payload) : state_of(message);
+    states[last] = message.is_discarded() ? std::string(payload) : state_text(message);
   } else if (message.is_object()) {
     for (const std::string_view property : properties) {
       if (const auto found = message.find(property); found != message.end())
-        states[std::string(property)] = state_of(*found);
+        states[std::string(property)] = state_text(*found);
     }
   }
   Changes changes;
@@ -272,6 +344,11 @@ std::string TextLines::since_first_midnight(std::int64_t us, int line, LogRemark
   return fixed(static_cast<double>(days_us_ + us) / us_per_s, 6);
 }
 
+template <typename Message>
+void LogFile::remark(std::string_view kind, int line, Message message) {
+  reading_.remarks.add(kind, {path_, line, 0}, message);
+}
+
 LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
     : path_(path.string()), reading_(reading), observer_(observer), timer_({}, nullptr, 0.0) {
   if (is_database(path)) {
@@ -283,7 +360,7 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
     lines_.emplace(path);
   }
   read_head();
-  shape_ = shape_of(head_, map_of_head(), path_, reading.zone, reading.rows);
+  find_shape();
   timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
   if (shape_.end) end_timer_.emplace(*shape_.end, reading.zone, reading.map.shift_s);
   if (shape_.header_line > 0) head_.erase(head_.begin());
@@ -304,24 +381,109 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
   readings_.emplace(shape_.cadence, values_);
 }
 
+template <typename Take>
+void LogFile::each_row(Take take) {
+  std::vector<HeadLine> rows;
+  while (database_ || text_ || json_ || is_ruled_) {
+    const auto line = next_line();
+    if (!line) return;
+    rows.assign(text_ ? 0 : 1, *line);
+    if (text_) text_->read(*line, rows, reading_.remarks);
+    for (const HeadLine& row : rows) take(row.text, row.line);
+  }
+  while (const auto line = lines_->next()) {  // without a copy of each
+    if (!has_no_data(*line)) take(*line, lines_->where().line);
+  }
+}
+
+/// Rows newest first are turned round, for which all of them are kept.
+void LogFile::find_shape() {
+  LogMap map = map_of_head();
+  if (map.files == LogMap::Files::sensors) map.sensors.clear();  // which are named as the files are
+  const auto shape = [&] {
+    const auto n = static_cast<std::ptrdiff_t>(std::min(head_.size(), head_lines));
+    return shape_of({head_.begin(), head_.begin() + n}, map, path_, reading_.zone, reading_.rows);
+  };
+  shape_ = shape();
+  if (shape_.is_newest_first) {
+    each_row([&](std::string_view line, int number) { head_.push_back({std::string(line), number}); });
+    std::reverse(head_.begin() + (shape_.header_line > 0 ? 1 : 0), head_.end());
+    map.order = LogMap::Order::oldest_first;
+    shape_ = shape();
+    remark("order", 0, [] { return "the newest row is the first: rows are read from the end"; });
+  }
+  if (map.files != LogMap::Files::sensors) return;
+  if (!is_of_one_sensor())
+    throw Error(ErrorCode::input, Where{path_}, "files: sensors: expected a column of states alone in each file");
+  shape_.names[shape_.sensors.front()] = name_of_file(path_);
+}
+
+/// A document may be one line, or all that follows.
+void LogFile::take_json(std::string text) {
+  const int number = lines_->where().line;
+  if (has_no_data(text) || json_->add(text, number)) return;
+  (text += '\n') += lines_->rest(longest_document);
+  if (!json_->add(text, number)) throw Error(ErrorCode::input, {path_, number, 1}, "JSON that ends within a value");
+}
+
+std::optional<HeadLine> LogFile::next_object() {
+  while (json_->size() == 0) {
+    const auto line = lines_->next(longest_document);
+    if (!line) break;
+    take_json(std::string(*line));
+  }
+  return json_->size() == 0 ? std::nullopt : std::optional(HeadLine{json_->next(), lines_->where().line});
+}
+
 std::optional<HeadLine> LogFile::next_line() {
   if (database_) {
     auto row = database_->next();
     return row ? std::optional(HeadLine{std::move(*row), 0}) : std::nullopt;
   }
+  if (json_) return next_object();
   while (const auto line = lines_->next()) {
+    if (is_ruled_ && is_ruler(*line)) continue;
     if (!has_no_data(*line)) return HeadLine{is_ruled_ ? with_tabs(*line) : std::string(*line), lines_->where().line};
   }
   return std::nullopt;
 }
 
+/// Lines above the table: "sep=;" for a spreadsheet, HOBO's "Plot Title: Room 12" for people, a station's name.
+void LogFile::skip_titles() {
+  while (head_.size() > 2) {
+    const char separator = separator_of(head_[1].text);
+    const std::size_t n = n_fields(head_[1].text, separator);
+    const bool is_one = head_[0].text.starts_with("sep=") || separator_of(head_[0].text) == ' ';
+    if (separator == ' ' || n < 2 || !is_one || n_fields(head_[2].text, separator) != n) return;
+    head_.erase(head_.begin());
+  }
+}
+
+/// Objects of the first lines tell the columns.
+void LogFile::read_json_head(std::string first) {
+  json_.emplace(path_);
+  take_json(std::move(first));
+  while (json_->size() < head_lines) {
+    const auto line = lines_->next(longest_document);
+    if (!line) break;
+    take_json(std::string(*line));
+  }
+  head_.push_back({json_->header(), 1});
+  while (json_->size() > 0 && head_.size() < head_lines) head_.push_back({json_->next(), lines_->where().line});
+}
+
 void LogFile::read_head() {
   std::size_t bytes = 0;
+  if (!database_ && std::string_view("{[").find(lines_->front()) != std::string_view::npos) {
+    HeadLine first{std::string(*lines_->next(longest_document)), 1};
+    if (is_json(first.text)) return read_json_head(std::move(first.text));
+    head_.push_back(std::move(first));
+  }
   while (head_.size() < head_lines && bytes < head_bytes) {
     auto line = next_line();
     if (!line) break;
     bytes += line->text.size();
-    if (head_.empty() && (is_before_table(line->text) || is_comment(line->text))) continue;
+    if (head_.empty() && is_comment(line->text)) continue;
     head_.push_back(std::move(*line));
   }
   if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
@@ -329,11 +491,14 @@ void LogFile::read_head() {
     throw Error(ErrorCode::input, Where{path_}, "the database has no state of a binary sensor");
   if (database_) return;
   if (const auto writer = TextLines::writer_of(head_)) return read_text_head(*writer);
-  if (head_.size() > 1 && is_ruler(head_[1].text)) {
+  const auto ruler =
+      std::ranges::find_if(head_ | std::views::take(2), [](const auto& line) { return is_ruler(line.text); });
+  if (ruler != (head_ | std::views::take(2)).end()) {
     is_ruled_ = true;
-    head_.erase(head_.begin() + 1);
+    std::erase_if(head_, [](const HeadLine& line) { return is_ruler(line.text); });
     for (HeadLine& line : head_) line.text = with_tabs(line.text);
   }
+  skip_titles();
   if (const std::string_view other = what_is_no_table(head_.front().text); !other.empty())
     throw Error(ErrorCode::input, {path_, head_.front().line, 1}, "expected a table, got " + std::string(other));
 }
@@ -362,8 +527,9 @@ LogMap LogFile::map_of_head() const {
     throw Error(ErrorCode::input, Where{path_},
                 std::string(source()) + " has the form `events`, not what the map says");
   map.form = LogMap::Form::events;
+  map.order = LogMap::Order::oldest_first;
   map.time = {"time"};
-  map.sensor_column = "sensor";
+  map.sensor_column = {"sensor"};
   map.state_column = "state";
   return map;
 }
@@ -419,14 +585,16 @@ void LogFile::refuse_head() {
   for (const HeadLine& line : head_) take(line.text, line.line);
   if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
   throw Error(ErrorCode::input, {path_, head_.front().line, 1},
-              with_maps("one reading alone doesn't tell for how long it holds", {"interval_s: 30", "rows: changes"}));
+              with_maps(head_.size() == 1 ? "one reading alone doesn't tell for how long it holds"
+                                          : "all rows have one time, so that none tells for how long it holds",
+                        {"interval_s: 30", "rows: changes"}));
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
 
 template <typename Message>
 void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
-  const bool are_parts = shape_.separator != ' ' && source().empty();  // of the line as it stands
+  const bool are_parts = shape_.separator != ' ' && source().empty() && !json_;  // of the line as it stands
   int at = 1;
   for (std::size_t i = 0; i < std::min(column, fields_.size()) && are_parts; ++i)
     at += static_cast<int>(fields_[i].size()) + 1;
@@ -434,35 +602,19 @@ void LogFile::fault(std::string_view kind, int line, std::size_t column, Message
   if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
 }
 
-template <typename Message>
-void LogFile::remark(std::string_view kind, int line, Message message) {
-  reading_.remarks.add(kind, {path_, line, 0}, message);
-}
-
 void LogFile::read() {
-  for (const HeadLine& line : std::exchange(head_, {})) take(line.text, line.line);
   constexpr std::uint64_t now_and_then = 1U << 14U;
-  std::vector<HeadLine> rows;
-  const auto tell = [&] {
+  const auto take_and_tell = [&](std::string_view line, int number) {
+    take(line, number);
     if (observer_.read && reading_.n_rows % now_and_then == 0) observer_.read(reading_.n_rows);
   };
-  while (database_ || text_ || is_ruled_) {
-    const auto line = next_line();
-    if (!line) return finish();
-    rows.assign(text_ ? 0 : 1, *line);
-    if (text_) text_->read(*line, rows, reading_.remarks);
-    for (const HeadLine& row : rows) take(row.text, row.line);
-    tell();
-  }
-  while (const auto line = lines_->next()) {  // without a copy of each
-    if (has_no_data(*line)) continue;
-    take(*line, lines_->where().line);
-    tell();
-  }
+  for (const HeadLine& line : std::exchange(head_, {})) take_and_tell(line.text, line.line);
+  each_row(take_and_tell);
   finish();
 }
 
 void LogFile::finish() {
+  if (broken_) remark("last line", broken_->first, [] { return "the last line has too few fields: it is left out"; });
   require_order();
   if (shape_.form != LogMap::Form::wide || readings_ || n_rows_ == 0) return;
   for (const std::size_t column : shape_.sensors)  // until its last row, though that may change nothing
@@ -478,8 +630,7 @@ void LogFile::require_order() const {
           std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
               " are no later than rows before them: they tell of several sensors, or clocks were put back, or they "
               "are to be left out",
-          {"form: events, sensor: COLUMN, state: COLUMN", "time_zone: Europe/Berlin",
-           std::string("rows: ") + (readings_ ? "readings" : "changes")}));
+          {std::string("rows: ") + (readings_ ? "readings" : "changes")}));
 }
 
 std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
@@ -498,6 +649,10 @@ std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::st
 
 std::optional<std::int64_t> LogFile::time_of_row(LogTimer& timer, const TimeColumns& columns, int line) {
   LogTimer::Read read = timer.read(fields_);
+  if (read.oddity == LogTimer::Oddity::unset) {
+    take_unset(read.fault, line);
+    return std::nullopt;
+  }
   if (!read.us) {
     fault("time", line, columns.first, [&] { return read.fault; });
     return std::nullopt;
@@ -516,16 +671,24 @@ std::optional<std::int64_t> LogFile::time_of_row(LogTimer& timer, const TimeColu
 }
 
 void LogFile::take(std::string_view line, int number) {
+  const std::size_t wanted = shape_.n_fields();
+  const std::size_t least = wanted > 0 ? wanted : n_read_fields_;
+  const auto refuse_fields = [&](int at, std::size_t n) {
+    fault("fields", at, 0, [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(n); });
+  };
+  if (broken_) refuse_fields(broken_->first, broken_->second);  // not the last line
+  broken_.reset();
   if (!split_fields(line, shape_.separator, fields_, unquoted_)) {
     fields_.clear();
     return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
   }
-  const std::size_t wanted = shape_.n_fields();
-  const std::size_t least = wanted > 0 ? wanted : n_read_fields_;
-  if (fields_.size() < least || (wanted > 0 && fields_.size() > wanted)) {
-    return fault("fields", number, 0,
-                 [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(fields_.size()); });
+  if (wanted > 0 && fields_.size() > wanted) return refuse_fields(number, fields_.size());
+  if (fields_.size() < least) {
+    broken_ = {number, fields_.size()};
+    return;
   }
+  if (fields_[shape_.time.first] == shape_.names[shape_.time.first] && shape_.header_line > 0)
+    return remark("header", number, [] { return "the names of the columns stand here again: the line is left out"; });
   const auto us = time_of_row(timer_, shape_.time, number);
   if (!us) return;
   ++reading_.n_rows;
@@ -560,7 +723,7 @@ void LogFile::read_values(int line) {
   for (std::size_t i = 0; i < shape_.sensors.size(); ++i) {
     const std::string_view text = fields_[shape_.sensors[i]];
     if (keeps_empty && is_empty_cell(text)) continue;
-    const auto state = read_state(text);
+    const auto state = read_state(text, reading_.map.states);
     values_[i] = state.value_or(log_state::unknown);
     if (state) continue;
     const std::string& name = shape_.names[shape_.sensors[i]];
@@ -616,6 +779,20 @@ void LogFile::take_changes(std::int64_t us, int line) {
   last_values_ = values_;
 }
 
+/// A row from before the clock was set: its sensor may have changed since the row before.
+void LogFile::take_unset(const std::string& why, int line) {
+  reading_.unset.add("unset", {path_, line, 0},
+                     [&] { return why + ": the clock wasn't set, so that the line is left out"; });
+  if (!row_us_ || shape_.form == LogMap::Form::intervals) return;
+  if (shape_.form == LogMap::Form::wide) {
+    std::ranges::fill(values_, log_state::unknown);
+    if (shape_.people) values_.back() = log_state::unknown_count;
+    if (!readings_ && n_rows_ > 0) take_changes(*row_us_, line);
+  } else if (EventTracks::Track* track = track_of_row(line)) {
+    reading_.events.add(*track, *row_us_, log_state::unknown);
+  }
+}
+
 /// What is no state: of another kind of sensor, or a sensor's fault. From there on nothing is known.
 void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line) {
   ++track.n_other;
@@ -634,19 +811,22 @@ void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::in
 EventTracks::Track* LogFile::track_of(std::string_view name, int line) {
   EventTracks::Track* track = reading_.events.track(name);
   if (track == nullptr) {
-    fault("sensors", line, shape_.sensor,
-          [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
+    fault("sensors", line, 0, [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
   }
   return track;
 }
 
 EventTracks::Track* LogFile::track_of_row(int line) {
-  fields_[shape_.sensor] = trimmed(fields_[shape_.sensor]);
-  return track_of(fields_[shape_.sensor], line);
+  if (shape_.sensor.empty()) return track_of(name_of_file(path_), line);
+  if (shape_.sensor.size() == 1) return track_of(trimmed(fields_[shape_.sensor.front()]), line);
+  std::string name;
+  for (const std::size_t column : shape_.sensor) (name += name.empty() ? "" : "_") += trimmed(fields_[column]);
+  return track_of(name, line);
 }
 
 void LogFile::take_interval(std::int64_t us, int line) {
-  const auto end = time_of_row(*end_timer_, *shape_.end, line);
+  const bool is_open = trimmed(fields_[shape_.end->first]).empty();  // it goes on
+  const auto end = is_open ? std::optional(us) : time_of_row(*end_timer_, *shape_.end, line);
   if (!end) return;
   if (*end < us) {
     return fault("end", line, shape_.end->first, [&] {
@@ -656,7 +836,8 @@ void LogFile::take_interval(std::int64_t us, int line) {
   }
   EventTracks::Track* track = track_of_row(line);
   if (track == nullptr) return;
-  const auto state = shape_.state ? read_state(fields_[*shape_.state]) : std::optional(log_state::on);
+  const auto state =
+      shape_.state ? read_state(fields_[*shape_.state], reading_.map.states) : std::optional(log_state::on);
   if (!state || *state == log_state::unknown)
     return fault("state", line, *shape_.state,
                  [&] { return quoted(fields_[*shape_.state]) + " doesn't say whether this is motion"; });
@@ -664,16 +845,16 @@ void LogFile::take_interval(std::int64_t us, int line) {
   ++track->n_states;
   if (*state == log_state::off) return;  // as between all intervals
   reading_.events.add(*track, us, log_state::on);
-  reading_.events.add(*track, *end, log_state::off);
+  reading_.events.add(*track, *end, is_open ? log_state::unknown : log_state::off);
   require_few_events(line);
 }
 
 void LogFile::take_event(std::int64_t us, int line) {
   EventTracks::Track* track = track_of_row(line);
   if (track == nullptr) return;
-  const std::string_view name = fields_[shape_.sensor], text = fields_[*shape_.state];
+  const std::string_view name = track->in_log, text = shape_.state ? fields_[*shape_.state] : "on";
   const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
-  const auto value = is_people ? read_count(text) : read_state(text);
+  const auto value = is_people ? read_count(text) : read_state(text, reading_.map.states);
   const std::int32_t unknown = is_people ? log_state::unknown_count : log_state::unknown;
   if (!value) return take_odd_event(*track, us, unknown, line);
   ++track->n_states;

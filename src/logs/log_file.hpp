@@ -12,6 +12,7 @@
 
 #include "files/disk/line_reader.hpp"
 #include "logs/home_database.hpp"
+#include "logs/json_rows.hpp"
 #include "logs/log_proof.hpp"
 #include "logs/log_shape.hpp"
 #include "logs/times.hpp"
@@ -58,7 +59,7 @@ class LogRemarks {
 
 class TextLines {
  public:
-  enum class Writer { openhab, zigbee2mqtt, esphome };
+  enum class Writer { openhab, zigbee2mqtt, esphome, mosquitto, tasmota, fhem };
   /// Whose text the first lines are; none: nobody's that is known.
   [[nodiscard]] static std::optional<Writer> writer_of(std::span<const HeadLine> head);
 
@@ -80,6 +81,10 @@ class TextLines {
   [[nodiscard]] Changes changes_in(std::string_view text, int line, LogRemarks& remarks);
   [[nodiscard]] static Changes of_openhab(std::string_view text);
   [[nodiscard]] Changes of_zigbee2mqtt(std::string_view text);
+  [[nodiscard]] Changes of_message(const std::string& time, std::string_view topic, std::string_view payload);
+  [[nodiscard]] Changes of_mosquitto(std::string_view text);
+  [[nodiscard]] Changes of_tasmota(std::string_view text, int line, LogRemarks& remarks);
+  [[nodiscard]] static Changes of_fhem(std::string_view text);
   [[nodiscard]] Changes of_esphome(std::string_view text, int line, LogRemarks& remarks);
   [[nodiscard]] std::string since_first_midnight(std::int64_t us, int line, LogRemarks& remarks);
 
@@ -97,6 +102,8 @@ struct LogReading {
   const LogMap& map;
   LogZone* zone;  ///< none: null
   LogRemarks faults{}, remarks{};
+  LogRemarks unset{};      ///< rows left out, from before a clock was set
+  bool has_start = false;  ///< the map says from when on the log counts
   EventTracks events{};
   LogMap::Rows rows = LogMap::Rows::found;  ///< what those of the files so far are
   std::uint64_t n_rows = 0;
@@ -130,6 +137,10 @@ class LogFile {
   [[nodiscard]] LogTimer& timer() noexcept { return timer_; }
   /// None: events, or rows of changes.
   [[nodiscard]] std::optional<ReadingTracks>& readings() noexcept { return readings_; }
+  /// The only sensor of a file that has one and doesn't name it.
+  [[nodiscard]] bool is_of_one_sensor() const {
+    return shape_.form == LogMap::Form::wide && shape_.sensors.size() == 1 && !shape_.people;
+  }
   [[nodiscard]] InputFile file() const { return database_ ? database_->file() : lines_->file(); }
   /// "openHAB's log"; none of a table.
   [[nodiscard]] std::string_view source() const {
@@ -142,7 +153,14 @@ class LogFile {
 
  private:
   [[nodiscard]] std::optional<HeadLine> next_line();
+  [[nodiscard]] std::optional<HeadLine> next_object();
+  void find_shape();
   void read_head();
+  void skip_titles();
+  void read_json_head(std::string first);
+  void take_json(std::string text);
+  template <typename Take>
+  void each_row(Take take);
   void read_text_head(TextLines::Writer writer);
   [[nodiscard]] LogMap map_of_head() const;
   [[noreturn]] void refuse_head();
@@ -153,6 +171,7 @@ class LogFile {
   void take_readings(std::int64_t us, int line);
   void take_changes(std::int64_t us, int line);
   void take_event(std::int64_t us, int line);
+  void take_unset(const std::string& why, int line);
   void take_interval(std::int64_t us, int line);
   [[nodiscard]] EventTracks::Track* track_of(std::string_view name, int line);
   [[nodiscard]] EventTracks::Track* track_of_row(int line);
@@ -171,7 +190,9 @@ class LogFile {
   std::optional<LineReader> lines_;
   std::optional<HomeDatabase> database_;  ///< or
   std::optional<TextLines> text_;
-  bool is_ruled_ = false;  ///< a table for people
+  std::optional<JsonRows> json_;
+  bool is_ruled_ = false;                                ///< a table for people
+  std::optional<std::pair<int, std::size_t>> broken_{};  ///< a line with too few fields, and how many
   std::vector<HeadLine> head_;
   LogShape shape_;
   LogTimer timer_;

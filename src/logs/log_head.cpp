@@ -27,7 +27,7 @@ bool is_one_of(const Words& words, std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return word == text; });
 }
 
-constexpr std::size_t longest_state = 24;
+constexpr std::size_t longest_state = 32;
 
 bool begins_with_one_of(const std::vector<std::string>& words, const auto& beginnings) {
   return std::ranges::any_of(words, [&](const std::string& word) {
@@ -37,9 +37,10 @@ bool begins_with_one_of(const std::vector<std::string>& words, const auto& begin
 
 /// A first line of names has no time and no value in it, or names the time beside sensors that are numbers. "UTC"
 /// beside a date names nothing.
-bool is_header(const std::vector<std::string>& fields) {
-  const auto is_value = [](const std::string& field) {
-    return parse_stamp(field, LogMap::Dates::found) || order_of_date(field);
+bool is_header(const std::vector<std::string>& fields, const std::string& time_format) {
+  const auto is_value = [&](const std::string& field) {
+    return parse_stamp(field, LogMap::Dates::found, time_format) || parse_stamp(field, LogMap::Dates::found) ||
+           order_of_date(field);
   };
   const auto is_moment = [&](const std::string& field) { return is_value(field) && !is_number(field); };
   const auto is_time = [](const std::string& field) { return what_name_says(field) == NameSays::time; };
@@ -75,8 +76,7 @@ constexpr std::array all_kinds{Stamp::Kind::absolute, Stamp::Kind::local, Stamp:
                                Stamp::Kind::number};
 
 using KindCounts = std::array<std::size_t, all_kinds.size()>;
-void count_kind(std::string_view text, LogMap::Dates order, KindCounts& n) {
-  const auto stamp = parse_stamp(text, order);
+void count_kind(const std::optional<Stamp>& stamp, KindCounts& n) {
   if (stamp) ++n[static_cast<std::size_t>(std::ranges::find(all_kinds, stamp->kind) - all_kinds.begin())];
 }
 std::optional<Stamp::Kind> kind_of_most(const KindCounts& n, std::size_t n_rows) {
@@ -89,9 +89,9 @@ bool is_moment(std::optional<Stamp::Kind> kind) { return kind == Stamp::Kind::ab
 
 std::string in_map(const TimeColumns& time, const std::vector<std::string>& names) {
   if (time.more.empty()) return "time: " + quoted_yaml(names[time.first]);
-  std::vector<std::string> columns{quoted_yaml(names[time.first])};
-  for (const std::size_t column : time.more) columns.push_back(quoted_yaml(names[column]));
-  return "time: [" + joined(columns, ", ") + "]";
+  std::vector<std::string> columns{names[time.first]};
+  for (const std::size_t column : time.more) columns.push_back(names[column]);
+  return "time: " + quoted_yaml(columns);
 }
 
 }  // namespace
@@ -108,6 +108,19 @@ std::optional<std::int32_t> read_state(std::string_view text) {
   if (number == 0.0) return log_state::off;
   if (number == 1.0) return log_state::on;
   return std::nullopt;
+}
+
+std::optional<std::int32_t> read_state(std::string_view text, const LogMap::States& words) {
+  const auto number = decimal_number(text);
+  const auto has = [&](const std::vector<std::string>& list) {
+    return std::ranges::any_of(list, [&](const std::string& word) {
+      return small_letters(word) == small_letters(text) || (number && number == decimal_number(word));
+    });
+  };
+  if (has(words.on)) return log_state::on;
+  if (has(words.off)) return log_state::off;
+  if (words.above && number) return *number > *words.above ? log_state::on : log_state::off;
+  return read_state(text);
 }
 
 bool is_empty_cell(std::string_view text) {
@@ -196,6 +209,12 @@ std::string quoted_yaml(const std::string& text) {
   return result + '"';
 }
 
+std::string quoted_yaml(const std::vector<std::string>& list) {
+  std::vector<std::string> quoted;
+  for (const std::string& text : list) quoted.push_back(quoted_yaml(text));
+  return "[" + joined(quoted, ", ") + "]";
+}
+
 bool is_casas_motion(std::string_view name) {
   if (!name.starts_with('M')) return false;
   name.remove_prefix(1);
@@ -240,18 +259,22 @@ void HeadTable::refuse_with(const std::string& why, const std::vector<std::strin
   refuse(with_maps(why, maps) + columns_in_words());
 }
 
-HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file) {
+HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file,
+                   const std::string& time_format) {
   HeadTable table;
   table.file = file;
   for (const HeadLine& line : head) table.rows.push_back(fields_of(line, separator, file));
-  const std::size_t n = table.rows.front().size();
-  if (is_header(table.rows.front())) {
+  if (is_header(table.rows.front(), time_format)) {
     table.header_line = head.front().line;
     table.names = table.rows.front();
     table.rows.erase(table.rows.begin());
+    const auto has_more = [&](const auto& row) { return row.size() == table.names.size() + 1; };
+    if (separator != ' ' && !table.rows.empty() && std::ranges::all_of(table.rows, has_more))
+      table.names.insert(table.names.begin(), "");  // R's numbers of rows have no name
   } else {
-    table.names.resize(n);
+    table.names.resize(table.rows.front().size());
   }
+  const std::size_t n = table.names.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (table.names[i].empty()) table.names[i] = "column " + std::to_string(i + 1);
   }
@@ -262,7 +285,10 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
     throw Error(ErrorCode::input, {file, head[1].line, 1},
                 "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
   }
-  if (table.header_line > 0) std::erase_if(table.rows, is_other);
+  if (table.header_line > 0) {
+    std::erase_if(table.rows, is_other);
+    std::erase(table.rows, table.names);  // again, as a logger that starts anew writes them
+  }
   for (auto& row : table.rows) row.resize(n);
   return table;
 }
@@ -317,7 +343,7 @@ std::optional<Stamp::Kind> TimeFinder::kind_in(std::size_t column) const {
   if (!table_.rows.empty() && table_.count(column, is_date_of_digits) == table_.rows.size()) return Stamp::Kind::date;
   for (const auto order : {LogMap::Dates::found, LogMap::Dates::day_first, LogMap::Dates::year_first}) {
     KindCounts n{};
-    for (const auto& row : table_.rows) count_kind(row[column], order, n);
+    for (const auto& row : table_.rows) count_kind(stamp_of(row[column], order), n);
     if (const auto kind = kind_of_most(n, table_.rows.size())) return kind;
   }
   return std::nullopt;
@@ -328,7 +354,7 @@ std::optional<Stamp::Kind> TimeFinder::kind_of(const TimeColumns& time) const {
   for (const auto& row : table_.rows) {
     std::string text = row[time.first];
     for (const std::size_t column : time.more) (text += ' ') += row[column];
-    count_kind(text, time.order, n);
+    count_kind(stamp_of(text, time.order), n);
   }
   return kind_of_most(n, table_.rows.size());
 }
@@ -337,20 +363,64 @@ TimeColumns TimeFinder::column_of(std::size_t column, Stamp::Kind kind) const {
   TimeColumns time;
   time.first = column;
   time.kind = kind;
+  time.format = map_.time_format;
   if (kind == Stamp::Kind::time_of_day) return time;
   if (kind != Stamp::Kind::number) {
-    time.order = order_in(column);
+    if (time.format.empty()) time.order = order_in(column);
+    require_zone(column, time.order);
     return time;
   }
   std::vector<double> numbers;
   for (const auto& row : table_.rows) {
-    const auto stamp = parse_stamp(row[column], LogMap::Dates::found);
+    const auto stamp = stamp_of(row[column], LogMap::Dates::found);
     if (stamp && stamp->kind == Stamp::Kind::number) numbers.push_back(stamp->number);
   }
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  set_unit(time, *middle, table_.names[column]);
+  std::ranges::sort(numbers);
+  set_unit(time, numbers[numbers.size() / 2], table_.names[column]);
+  set_days(time, numbers);
   return time;
+}
+
+/// The name of a zone, as "CET", doesn't tell when its clocks are changed.
+void TimeFinder::require_zone(std::size_t column, LogMap::Dates order) const {
+  for (const auto& row : table_.rows) {
+    const auto stamp = stamp_of(row[column], order);
+    if (zone_ != nullptr || !stamp || stamp->zone_name.empty()) continue;
+    table_.refuse(with_maps("'" + row[column] + "' has the name of a zone, which doesn't tell its summer time",
+                            {"time_zone: " + zone_called(stamp->zone_name)}));
+  }
+}
+
+/// Days, as spreadsheets and MATLAB count them: as seconds they would be parts of one apart. numbers: in order.
+void TimeFinder::set_days(TimeColumns& time, const std::vector<double>& numbers) const {
+  using Zero = TimeColumns::Zero;
+  struct Days {
+    Zero zero;
+    const char* name;
+    double from, to;
+  };
+  constexpr std::array all{Days{Zero::excel, "excel_days", 30'000.0, 75'000.0},  // 1982 to 2105
+                           Days{Zero::matlab, "matlab_days", 720'000.0, 770'000.0}};
+  const double span = numbers.back() - numbers.front(), apart = span / static_cast<double>(numbers.size());
+  constexpr double longest = 3'660.0, too_fast_s = 0.05;  // assumed: no log of motion has 20 rows a second
+  for (const Days& days : all) {
+    const bool may_be = numbers.front() >= days.from && numbers.back() <= days.to && span <= longest &&
+                        std::ranges::any_of(numbers, [](double number) { return number != std::floor(number); });
+    const bool is_told = map_.time_format == days.name;
+    if (!is_told && (!may_be || map_.time_format == "seconds")) continue;
+    if (!is_told && apart >= too_fast_s) {
+      table_.refuse_with("'" + table_.names[time.first] + "' may be days, as a spreadsheet counts them, or seconds",
+                         {std::string("time_format: ") + days.name, "time_format: seconds"});
+    }
+    std::size_t decimals = 0;
+    for (const auto& row : table_.rows) {
+      const std::size_t point = row[time.first].find_first_of(".,");
+      if (point != std::string::npos) decimals = std::max(decimals, row[time.first].size() - point - 1);
+    }
+    time.zero = days.zero;
+    time.unit_us = decimals <= 6 ? us_per_s : us_per_ms;  // a millionth of a day is a tenth of a second
+    return;
+  }
 }
 
 /// With its time of day a date may have an offset.
@@ -384,7 +454,7 @@ TimeFinder::Numbers TimeFinder::numbers_of(std::size_t column) const {
   std::size_t n_back = 0, n_since_1970 = 0, n = 0;
   double first = 0.0, last = 0.0;
   for (const auto& row : table_.rows) {
-    const auto stamp = parse_stamp(row[column], LogMap::Dates::found);
+    const auto stamp = stamp_of(row[column], LogMap::Dates::found);
     if (!stamp || stamp->kind != Stamp::Kind::number) continue;
     n_back += n > 0 && stamp->number < last ? 1 : 0;
     last = stamp->number;
@@ -510,7 +580,18 @@ TimeColumns TimeFinder::find(const std::vector<std::string>& told) const {
       numbers.push_back({column_of(i, Stamp::Kind::time_of_day), rank_as_time(table_.names[i])});
     return with_rest(surest(numbers), columns);
   }
-  table_.refuse((told.empty() ? std::string("no column holds times; name it in a map: time")
+  const auto is_unread = [](const std::string& text) {
+    constexpr int fewest = 5;
+    return std::ranges::count_if(text, [](char c) { return c >= '0' && c <= '9'; }) >= fewest;
+  };
+  for (const std::size_t i : columns) {
+    if (!table_.is_mostly(i, is_unread) || (told.empty() && is_still(i))) continue;
+    table_.refuse(
+        "'" + table_.rows.front()[i] + "' in '" + table_.names[i] + "' may be a time, but none that can be " +
+        (map_.time_format.empty() ? "read" : "read by time_format, '" + map_.time_format + "'") +
+        "; write it as 2026-03-02 07:00:00, or give its pattern in a map (time_format: \"%d.%m.%Y %H:%M:%S\")");
+  }
+  table_.refuse((told.empty() ? std::string("no column holds times")
                               : "no times can be read from '" + joined(told, "', '") + "'") +
                 table_.columns_in_words());
 }

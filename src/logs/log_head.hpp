@@ -15,6 +15,8 @@ namespace pirsim::io {
 
 /// log_state of "1", "0.0", "on", "False", "motion", "unavailable", ""; none for what is no state.
 [[nodiscard]] std::optional<std::int32_t> read_state(std::string_view text);
+/// By the words of a map first.
+[[nodiscard]] std::optional<std::int32_t> read_state(std::string_view text, const LogMap::States& words);
 /// "", "nan", "null": a table's cell in which nothing stands.
 [[nodiscard]] bool is_empty_cell(std::string_view text);
 /// A whole number from 0, also as "3.0"; log_state::unknown_count for what says that nobody knows; none for any other
@@ -37,6 +39,7 @@ enum class NameSays { nothing, time, sensor, state, motion, count, presence, oth
 
 /// A text that YAML takes for nothing else.
 [[nodiscard]] std::string quoted_yaml(const std::string& text);
+[[nodiscard]] std::string quoted_yaml(const std::vector<std::string>& list);
 
 // The first lines of a log as a table.
 
@@ -69,8 +72,9 @@ struct HeadTable {
   [[noreturn]] void refuse_with(const std::string& why, const std::vector<std::string>& maps) const;
 };
 
-/// Throws Error(input).
-[[nodiscard]] HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file);
+/// time_format: of a map. Throws Error(input).
+[[nodiscard]] HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std::string& file,
+                                 const std::string& time_format);
 
 [[nodiscard]] bool is_number(const std::string& text);
 
@@ -108,6 +112,11 @@ class TimeFinder {
   [[nodiscard]] TimeColumns column_of(std::size_t column, Stamp::Kind kind) const;
   [[nodiscard]] TimeColumns pair_of(std::size_t date, std::size_t hour) const;
   [[nodiscard]] std::optional<Stamp::Kind> kind_of(const TimeColumns& time) const;
+  [[nodiscard]] std::optional<Stamp> stamp_of(std::string_view text, LogMap::Dates order) const {
+    return parse_stamp(text, order, map_.time_format);
+  }
+  void require_zone(std::size_t column, LogMap::Dates order) const;
+  void set_days(TimeColumns& time, const std::vector<double>& numbers) const;
   [[nodiscard]] TimeColumns with_rest(TimeColumns time, const Columns& columns) const;
   [[nodiscard]] Numbers numbers_of(std::size_t column) const;
   [[nodiscard]] std::vector<Candidate> moments(const Columns& columns, const Columns& dates,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -197,14 +198,15 @@ EventTracks::Track* EventTracks::track(std::string_view in_log) {
 bool EventTracks::add(Track& track, std::int64_t us, std::int32_t value) {
   const bool is_in_order = track.events.empty() || track.events.back().us <= us;
   track.is_sorted = track.is_sorted && is_in_order;
+  note(track, us);
   track.events.push_back({us, 0, value});
   ++n_events_;
-  note(track, us);
   return is_in_order;
 }
 
 void EventTracks::note(Track& track, std::int64_t us) {
-  if (track.parts.empty() || track.parts.back().file != file_) track.parts.push_back({file_, us, us});
+  if (track.parts.empty() || track.parts.back().file != file_)
+    track.parts.push_back({file_, us, us, track.events.size()});
   Track::FilePart& part = track.parts.back();
   part.first_us = std::min(part.first_us, us);
   part.last_us = std::max(part.last_us, us);
@@ -213,15 +215,7 @@ void EventTracks::note(Track& track, std::int64_t us) {
 std::vector<LogChange> changes_of(EventTracks::Track& track, const MotionEnds& ends,
                                   const std::function<void(std::int64_t)>& lost) {
   std::vector<LogChange> events = std::exchange(track.events, {});
-  if (!track.is_sorted) {
-    std::size_t n_back = 0, n_on = 0;
-    for (std::size_t i = 1; i < events.size(); ++i) {
-      n_back += events[i].us < events[i - 1].us ? 1 : 0;
-      n_on += events[i].us > events[i - 1].us ? 1 : 0;
-    }
-    if (n_back > n_on) std::ranges::reverse(events);  // newest first, also what has one stamp
-    std::ranges::stable_sort(events, {}, &LogChange::us);
-  }
+  if (!track.is_sorted) std::ranges::stable_sort(events, {}, &LogChange::us);
   if (ends.hold_us || ends.longest_us) events = with_ends(events, ends, lost);
   const auto same = [](const LogChange& a, const LogChange& b) { return a.value == b.value; };
   events.erase(std::unique(events.begin(), events.end(), same), events.end());
@@ -233,7 +227,11 @@ std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
                               const std::function<void(std::int64_t)>& overlap) {
   const std::vector<LogChange> events = std::exchange(track.events, {});
   std::vector<std::pair<std::int64_t, std::int64_t>> given, whole;
-  for (std::size_t i = 0; i + 1 < events.size(); i += 2) given.emplace_back(events[i].us, events[i + 1].us);
+  std::set<std::int64_t> open;  // begins of those whose end isn't told
+  for (std::size_t i = 0; i + 1 < events.size(); i += 2) {
+    given.emplace_back(events[i].us, events[i + 1].us);
+    if (events[i + 1].value == log_state::unknown) open.insert(events[i].us);
+  }
   std::ranges::sort(given);
   for (const auto& [begin, end] : given) {
     if (!whole.empty() && begin < whole.back().second) overlap(begin);
@@ -242,8 +240,10 @@ std::vector<LogChange> united(EventTracks::Track& track, std::int64_t begin_us,
   }
   std::vector<LogChange> changes{{begin_us, 0, log_state::off}};
   for (const auto& [begin, end] : whole) {
-    changes.push_back({begin, 0, log_state::on});
-    changes.push_back({end, 0, log_state::off});
+    // The last one goes on; the end of another was lost.
+    const bool is_open = open.contains(begin) && begin == end, is_last = begin == whole.back().first;
+    changes.push_back({begin, 0, is_open && !is_last ? log_state::unknown : log_state::on});
+    if (!is_open) changes.push_back({end, 0, log_state::off});
   }
   return changes;
 }

@@ -61,6 +61,7 @@ class EventTracks {
     struct FilePart {
       std::size_t file;
       std::int64_t first_us, last_us;
+      std::size_t first_event;  ///< that the file tells
     };
     std::vector<FilePart> parts{};  ///< of each file that tells of it
   };

@@ -27,6 +27,29 @@ std::string name_of(const LogMap& map, const std::string& in_log) {
   return found == map.sensors.end() ? in_log : found->name;
 }
 
+// --------------------------------------------------------------------------------------------------------------- parts
+
+/// Files that tell of one sensor, or of several, at the same time.
+struct Overlap : Error {
+  using Error::Error;
+};
+
+/// Two files may tell the same of a time; where they don't, they are no parts of one log. Changes in order of time.
+void require_agreement(const std::vector<LogChange>& one, const std::vector<LogChange>& other,
+                       const LogReading::Moments& span, const Where& where, const std::string& what) {
+  const auto value = [](const std::vector<LogChange>& changes, std::int64_t us) {
+    const auto after = std::ranges::upper_bound(changes, us, {}, &LogChange::us);
+    return after == changes.begin() ? std::nullopt : std::optional((after - 1)->value);
+  };
+  for (const auto* changes : {&one, &other}) {
+    for (const LogChange& change : *changes) {
+      const bool is_common = change.us >= span.first_us && change.us <= span.last_us;
+      if (!is_common || value(one, change.us) == value(other, change.us)) continue;
+      throw Overlap(ErrorCode::input, where, "it overlaps another file in time, and says something else of " + what);
+    }
+  }
+}
+
 // ------------------------------------------------------------------------------------------------------------ readings
 
 /// Readings of one file after those of another.
@@ -89,14 +112,17 @@ class ReadingParts {
       track.changes = std::move(changes);
       last_.push_back({track.name, part.last_us()});
     } else {
-      if (*last >= part.first_us())
-        throw Error(ErrorCode::input, where,
-                    "it overlaps another file in time, with the same column '" + track.in_log + "'");
-      end(track, part.first_us(), unknown);
-      changes.front().since_last_us = std::min(log_.interval_us, part.first_us() - *last);
-      if (changes.front().value == track.changes.back().value) changes.erase(changes.begin());
+      if (*last >= part.first_us()) {
+        require_agreement(track.changes, changes, {part.first_us(), std::min(*last, part.last_us())}, where,
+                          "column '" + track.in_log + "'");
+        std::erase_if(changes, [&](const LogChange& change) { return change.us <= *last; });
+      } else {
+        end(track, part.first_us(), unknown);
+        changes.front().since_last_us = std::min(log_.interval_us, part.first_us() - *last);
+        if (changes.front().value == track.changes.back().value) changes.erase(changes.begin());
+      }
       track.changes.insert(track.changes.end(), changes.begin(), changes.end());
-      *last = part.last_us();
+      *last = std::max(*last, part.last_us());
     }
     track.n_read += part.n_readings();
   }
@@ -231,14 +257,30 @@ void require_sensors(const Log& log, const LogMap::Seconds& seconds, const std::
 }
 
 /// What two files tell of one sensor at the same time may be two sensors'.
-void require_parts(EventTracks::Track& track, const std::vector<InputFile>& files) {
-  std::ranges::sort(track.parts, {}, &EventTracks::Track::FilePart::first_us);
-  for (std::size_t i = 1; i < track.parts.size(); ++i) {
-    if (track.parts[i - 1].last_us < track.parts[i].first_us) continue;
-    const std::size_t later = std::max(track.parts[i - 1].file, track.parts[i].file);
-    throw Error(ErrorCode::input, Where{files[later - 1].path},
-                "it overlaps another file in time, with the same sensor '" + track.in_log + "'");
+void require_parts(const EventTracks::Track& track, const std::vector<InputFile>& files) {
+  using Part = EventTracks::Track::FilePart;
+  const auto events_of = [&](const Part& part) {
+    const auto next = std::ranges::find(track.parts, &part, [](const Part& other) { return &other; }) + 1;
+    const std::size_t end = next == track.parts.end() ? track.events.size() : next->first_event;
+    std::vector<LogChange> events(track.events.begin() + std::ptrdiff_t(part.first_event),
+                                  track.events.begin() + std::ptrdiff_t(end));
+    std::ranges::stable_sort(events, {}, &LogChange::us);
+    return events;
+  };
+  for (const Part& part : track.parts) {
+    for (const Part& before : track.parts) {
+      if (&before == &part) break;
+      const LogReading::Moments span{std::max(before.first_us, part.first_us), std::min(before.last_us, part.last_us)};
+      if (span.first_us > span.last_us) continue;
+      require_agreement(events_of(before), events_of(part), span, Where{files[part.file - 1].path},
+                        "'" + track.in_log + "'");
+    }
   }
+}
+
+std::string shortened_list(const std::vector<std::string>& names) {
+  constexpr std::ptrdiff_t most = 12;
+  return joined({names.begin(), names.begin() + std::min(most, std::ssize(names))}, ", ");
 }
 
 void finish_events(Log& log, LogReading& reading) {
@@ -273,14 +315,15 @@ void finish_events(Log& log, LogReading& reading) {
   require_sensors(log, log.map.hold_s, "hold_s");
   require_sensors(log, log.map.longest_motion_s, "longest_motion_s");
   if (log.sensors.empty()) {
-    const std::vector<std::string> first(
-        log.others.begin(), log.others.begin() + std::ptrdiff_t(std::min<std::size_t>(12, log.others.size())));
-    throw Error(
-        ErrorCode::input, where,
-        with_maps("no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called a "
-                  "door's or a switch's" +
-                      (first.empty() ? std::string() : "; it has events of " + joined(first, ", ")),
-                  {"sensors: [" + (first.empty() ? std::string("COLUMN") : quoted_yaml(first.front())) + "]"}));
+    std::vector<std::string> maps;
+    for (const EventTracks::Track& track : tracks) {
+      if (may_be_sensor(track) && maps.size() < 12) maps.push_back("sensors: [" + quoted_yaml(track.in_log) + "]");
+    }
+    const std::string why =
+        "no motion sensor is in it: nothing is on and off, 0 and 1, or true and false, and not called "
+        "a door's or a switch's; it has events of " +
+        shortened_list(log.others);
+    throw Error(ErrorCode::input, where, maps.empty() ? why : with_maps(why, maps));
   }
 }
 
@@ -298,7 +341,8 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
     for (const std::size_t column : shape.end->more) map.end.push_back(shape.names[column]);
   }
   if (shape.form != LogMap::Form::wide) {
-    map.sensor_column = shape.names[shape.sensor];
+    map.sensor_column.clear();
+    for (const std::size_t column : shape.sensor) map.sensor_column.push_back(shape.names[column]);
     if (shape.state) map.state_column = shape.names[*shape.state];
   } else {
     map.rows = log.has_readings() ? LogMap::Rows::readings : LogMap::Rows::changes;
@@ -309,6 +353,54 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   for (const LogTrack& track : log.sensors) map.sensors.push_back({track.name, track.in_log});
   if (log.people) map.people = log.people->in_log;
   map.people_mean = log.people ? shape.people_mean : LogMap::People::none;
+}
+
+/// A sensor that was renamed: it says what the name says that told last. That one name isn't known tells nothing while
+/// another one is.
+void join_renamed(Log& log) {
+  for (std::size_t i = 0; i < log.sensors.size(); ++i) {
+    LogTrack& track = log.sensors[i];
+    std::vector<std::pair<LogChange, std::size_t>> told;
+    std::size_t n_names = 0, n_turns = 0;
+    for (const LogTrack& part : log.sensors) {
+      if (part.name != track.name) continue;
+      for (const LogChange& change : part.changes) told.emplace_back(change, n_names);
+      if (n_names++ > 0) (track.in_log += ", ") += part.in_log, track.n_read += part.n_read;
+    }
+    if (n_names < 2) continue;
+    std::ranges::stable_sort(told, {}, [](const auto& one) { return one.first.us; });
+    std::vector<LogChange> joined_changes;
+    std::optional<std::size_t> last;
+    for (const auto& [change, name] : told) {
+      if (last && *last != name && change.value == log_state::unknown) continue;
+      n_turns += last && *last != name ? 1 : 0;
+      last = name;
+      if (!joined_changes.empty() && joined_changes.back().us == change.us) joined_changes.pop_back();
+      if (joined_changes.empty() || joined_changes.back().value != change.value) joined_changes.push_back(change);
+    }
+    if (n_turns >= n_names) {
+      throw Error(ErrorCode::input, Where{log.files.front().path},
+                  "sensors: the names of '" + track.name +
+                      "' tell in turns, so that they are several sensors': " + track.in_log);
+    }
+    track.changes = std::move(joined_changes);
+    const auto is_part = [&](const LogTrack& part) { return &part != &track && part.name == track.name; };
+    log.sensors.erase(std::remove_if(log.sensors.begin() + std::ptrdiff_t(i) + 1, log.sensors.end(), is_part),
+                      log.sensors.end());
+  }
+}
+
+/// Rows from before the clock was set: few, or those before the time from which on a map wants the log.
+void require_few_unset(LogReading& reading, const Log& log) {
+  constexpr std::uint64_t one_in = 50;  // assumed
+  const bool are_few = !reading.map.from.empty() || one_in * reading.unset.count() <= reading.n_rows;
+  for (Issue& issue : reading.unset.issues(are_few ? Severity::warning : Severity::error)) {
+    const std::string why = reading.first_us
+                                ? with_maps(issue.message, {"from: " + to_text({*reading.first_us, 0}, log.clock)})
+                                : issue.message;
+    if (!are_few) throw Error(ErrorCode::input, issue.where, why);
+    reading.remarks.add("unset", issue.where, [&] { return issue.message; });
+  }
 }
 
 /// Rows of changes become events of columns, which are known: those of all files.
@@ -401,8 +493,7 @@ void require_one_form(const LogFile& first, LogFile& other, LogFile& first_again
 
 }  // namespace
 
-Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, const LogObserver& observer) {
-  if (files.empty()) throw Error(ErrorCode::usage, "a log has at least one file");
+static Log read_once(std::span<const std::filesystem::path> files, const LogMap& map, const LogObserver& observer) {
   std::optional<LogZone> zone;
   if (!map.time_zone.empty()) zone.emplace(map.time_zone, Where{});
   LogReading reading{map, zone ? &*zone : nullptr};
@@ -423,9 +514,10 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     log.files.push_back(opened.file());
   }
   if (reading.faults.count() > 0) throw Error(ErrorCode::input, reading.faults.issues(Severity::error));
+  log.clock = read.front()->timer().clock();
+  require_few_unset(reading, log);
   reading.require_years();
   LogFile& first = *read.front();
-  log.clock = first.timer().clock();
   log.n_rows = reading.n_rows;
   log.source = first.source();
   for (const auto& file : read) log.n_other_lines += file->n_other_lines();
@@ -461,11 +553,29 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     }
     log.offsets = in_order(std::move(log.offsets));
   }
-  check_names(log);
   complete(log.map, first, log);
+  join_renamed(log);
+  check_names(log);
   remark_constant_sensors(log, reading);
   log.remarks = reading.remarks.issues(Severity::warning);
   return log;
+}
+
+Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, const LogObserver& observer) {
+  if (files.empty()) throw Error(ErrorCode::usage, "a log has at least one file");
+  try {
+    return read_once(files, map, observer);
+  } catch (const Overlap&) {
+    const auto is_twice = [](const std::filesystem::path& file) { return std::filesystem::is_regular_file(file); };
+    if (map.files != LogMap::Files::found || !std::ranges::all_of(files, is_twice)) throw;
+    LogMap of_sensors = map;
+    of_sensors.files = LogMap::Files::sensors;
+    try {
+      return read_once(files, of_sensors, observer);
+    } catch (const Error&) {  // they have several
+    }
+    throw;
+  }
 }
 
 LogRows read_log_rows(std::span<const std::filesystem::path> files, const LogMap& map, double window_s) {
@@ -496,6 +606,16 @@ struct Words<LogMap::Dates> {
                                                    {"year_first", LogMap::Dates::year_first}}};
 };
 template <>
+struct Words<LogMap::Order> {
+  static constexpr WordList<LogMap::Order, 2> all{
+      {{"oldest_first", LogMap::Order::oldest_first}, {"newest_first", LogMap::Order::newest_first}}};
+};
+template <>
+struct Words<LogMap::Files> {
+  static constexpr WordList<LogMap::Files, 2> all{
+      {{"parts", LogMap::Files::parts}, {"sensors", LogMap::Files::sensors}}};
+};
+template <>
 struct Words<LogMap::Stamps> {
   static constexpr WordList<LogMap::Stamps, 2> all{{{"end", LogMap::Stamps::end}, {"begin", LogMap::Stamps::begin}}};
 };
@@ -523,17 +643,28 @@ Enum choice(YamlMap& map, const std::string& key, Enum otherwise) {
 /// `time: stamp`, `time: [Date, Time]`, or `time: [Date, Time, AmPm]`.
 std::vector<std::string> read_time(YamlMap& map, const std::string& key) {
   const auto node = map.child(key);
-  if (!node) return {};
-  std::vector<std::string> columns;
-  if (node->is_list()) {
-    for (const YamlNode& item : read_list(*node, map.faults(), key)) columns.push_back(item.text(map.faults(), key));
-  } else {
-    columns.push_back(node->text(map.faults(), key));
-  }
-  if (columns.empty() || columns.size() > 3) {
+  std::vector<std::string> columns = map.texts(key);
+  if (node && (columns.empty() || columns.size() > 3)) {
     map.faults().error(node->where(), key + ": expected a column, or those of date, time, and AM or PM or an offset");
   }
   return columns;
+}
+
+/// `states: {on: [pir, 255], off: none}`, and `above: 0`.
+LogMap::States read_states(YamlMap& map) {
+  LogMap::States states;
+  states.above = map.optional_number("above", {.min = -1e9, .max = 1e9});
+  const auto node = map.child("states");
+  if (!node) return states;
+  YamlMap words(*node, map.faults(), "states");
+  states.on = words.texts("on");
+  states.off = words.texts("off");
+  words.finish();
+  for (const std::string& word : states.on) {
+    if (std::ranges::find(states.off, word) != states.off.end())
+      map.faults().error(node->where(), "states: '" + word + "' is on and off");
+  }
+  return states;
 }
 
 /// `hold_s: 30`, or of some sensors `hold_s: {hall: 30}`.
@@ -552,7 +683,7 @@ LogMap::Seconds read_seconds(YamlMap& map, const std::string& key, NumberRange r
   return seconds;
 }
 
-/// `sensors: {PIR1: S6_PIR}`, or `sensors: [S6_PIR, S7_PIR]` under their own names.
+/// `sensors: {PIR1: S6_PIR}`, one that was renamed `{PIR1: [old, new]}`, or `[S6_PIR, S7_PIR]` under their own names.
 std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
   const auto node = map.child("sensors");
   if (!node || node->is_null()) return {};
@@ -573,7 +704,10 @@ std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (const std::string fault = line_fault(keys[i].name); !fault.empty())
       map.faults().error(keys[i].where, "sensors: '" + keys[i].name + "': " + fault);
-    sensors.push_back({keys[i].name, values[i].text(map.faults(), "sensors: " + keys[i].name)});
+    const std::string label = "sensors: " + keys[i].name;
+    std::vector<YamlNode> names{values[i]};
+    if (values[i].is_list()) names = read_list(values[i], map.faults(), label);
+    for (const YamlNode& name : names) sensors.push_back({keys[i].name, name.text(map.faults(), label)});
   }
   return sensors;
 }
@@ -585,7 +719,7 @@ void check_sensors(YamlMap& map, const std::vector<LogMap::Sensor>& sensors) {
     const bool is_first = std::find_if(sensors.begin(), before,
                                        [&](const auto& other) { return other.in_log == sensors[i].in_log; }) == before;
     if (is_first && !is_column_name(sensors[i].name)) continue;
-    const Where where = map.child("sensors")->items()[i].where();
+    const Where where = map.child("sensors")->where();
     if (!is_first) map.faults().error(where, "sensors: '" + sensors[i].in_log + "' is named twice");
     if (is_column_name(sensors[i].name))
       map.faults().error(where, "sensors: '" + sensors[i].name +
@@ -623,8 +757,12 @@ LogMap map_from(const YamlNode& root) {
   log.empty = choice(map, "empty", log.empty);
   log.time = read_time(map, "time");
   log.end = read_time(map, "end");
-  log.sensor_column = map.text("sensor");
+  log.sensor_column = map.texts("sensor");
   log.state_column = map.text("state");
+  log.states = read_states(map);
+  log.order = choice(map, "order", log.order);
+  log.files = choice(map, "files", log.files);
+  log.time_format = map.text("time_format");
   log.time_zone = map.text("time_zone");
   log.dates = choice(map, "dates", log.dates);
   log.stamps = choice(map, "stamps", log.stamps);
@@ -642,6 +780,17 @@ LogMap map_from(const YamlNode& root) {
   map.finish();
   faults.throw_if_errors();
   return log;
+}
+
+/// Of each sensor, in the map's order.
+std::vector<std::pair<std::string, std::vector<std::string>>> names_in_log(const LogMap& map) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> all;
+  for (const LogMap::Sensor& sensor : map.sensors) {
+    auto known = std::ranges::find(all, sensor.name, [](const auto& one) { return one.first; });
+    if (known == all.end()) known = all.insert(known, {sensor.name, {}});
+    known->second.push_back(sensor.in_log);
+  }
+  return all;
 }
 
 }  // namespace
@@ -662,11 +811,9 @@ std::string to_yaml(const LogMap& map) {
   const auto number = [&](const char* key, const std::optional<double>& value) {
     if (value) line(key, csv_number(*value));
   };
-  const auto time = [&](const char* key, const std::vector<std::string>& columns) {
-    if (columns.size() == 1) text(key, columns.front());
-    std::vector<std::string> quoted;
-    std::ranges::transform(columns, std::back_inserter(quoted), quoted_yaml);
-    if (columns.size() > 1) line(key, "[" + joined(quoted, ", ") + "]");
+  const auto texts = [&](const char* key, const std::vector<std::string>& all) {
+    if (all.size() == 1) text(key, all.front());
+    if (all.size() > 1) line(key, quoted_yaml(all));
   };
   const auto seconds = [&](const char* key, const LogMap::Seconds& value) {
     if (value.each.empty()) return number(key, value.all);
@@ -677,16 +824,21 @@ std::string to_yaml(const LogMap& map) {
   line("form", word_of(map.form));
   line("rows", word_of(map.rows));
   line("empty", word_of(map.empty));
-  time("time", map.time);
-  time("end", map.end);
-  text("sensor", map.sensor_column);
+  texts("time", map.time);
+  texts("end", map.end);
+  texts("sensor", map.sensor_column);
   text("state", map.state_column);
+  if (!map.states.on.empty() || !map.states.off.empty())
+    line("states", "{on: " + quoted_yaml(map.states.on) + ", off: " + quoted_yaml(map.states.off) + "}");
+  number("above", map.states.above);
+  line("order", word_of(map.order));
+  line("files", word_of(map.files));
+  text("time_format", map.time_format);
   text("time_zone", map.time_zone);
   line("dates", word_of(map.dates));
   if (map.stamps != LogMap::Stamps::end) line("stamps", word_of(map.stamps));
   if (!map.sensors.empty()) out << "sensors:\n";
-  for (const LogMap::Sensor& sensor : map.sensors)
-    out << "  " << quoted_yaml(sensor.name) << ": " << quoted_yaml(sensor.in_log) << '\n';
+  for (const auto& [name, names] : names_in_log(map)) texts(("  " + quoted_yaml(name)).c_str(), names);
   if (!map.people.empty())
     out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word_of(map.people_mean) << "}\n";
   if (map.people_mean == LogMap::People::none) line("people", "none");

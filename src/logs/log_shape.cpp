@@ -26,7 +26,7 @@ class Finder {
       : table_(table), map_(map), time_finder_(table, map, zone), states_(table.n_columns()) {
     for (const auto& row : table.rows) {
       for (std::size_t i = 0; i < states_.size(); ++i) {
-        const auto state = read_state(row[i]);
+        const auto state = state_of(row[i]);
         if (state && *state != log_state::unknown) states_[i].insert(*state);
       }
     }
@@ -38,12 +38,16 @@ class Finder {
     shape.time = time_;
     are_words_ = shape.separator == ' ';
     times_ = time_finder_.times(time_);
+    shape.is_newest_first =
+        map_.order == LogMap::Order::newest_first || (map_.order == LogMap::Order::found && times_fall());
+    if (shape.is_newest_first) return;
     const auto events = sensor_and_state();
     if (map_.form == LogMap::Form::events && !events)
       table_.refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
-      if (map_.form == LogMap::Form::found) require_events(*events);
+      if (events->state) require_words(*events->state, in_map(*events) + ", ");
+      if (map_.form == LogMap::Form::found && events->state) require_events(*events);
       shape.sensor = events->sensor;
       shape.state = events->state;
     } else {
@@ -54,6 +58,26 @@ class Finder {
 
  private:
   [[nodiscard]] NameSays says(std::size_t column) const { return table_.says(column); }
+  [[nodiscard]] std::optional<std::int32_t> state_of(std::string_view text) const {
+    return read_state(text, map_.states);
+  }
+  /// From row to row, as histories list them whose newest row is the first.
+  [[nodiscard]] bool times_fall() const {
+    constexpr std::size_t fewest = 3;
+    std::size_t n_back = 0, n_on = 0;
+    for (std::size_t i = 1; i < times_.size(); ++i) {
+      if (!times_[i] || !times_[i - 1]) continue;
+      n_back += *times_[i] < *times_[i - 1] ? 1 : 0;
+      n_on += *times_[i] > *times_[i - 1] ? 1 : 0;
+    }
+    return n_back >= fewest && 10 * n_back >= 9 * (n_back + n_on);
+  }
+  /// Of a row: sensors may be named in several columns.
+  [[nodiscard]] std::string name_in(std::size_t row, const std::vector<std::size_t>& columns) const {
+    std::vector<std::string> names;
+    for (const std::size_t column : columns) names.push_back(table_.rows[row][column]);
+    return joined(names, "_");
+  }
   [[nodiscard]] bool is_called_motion(std::size_t column) const {
     return says(column) == NameSays::motion || says(column) == NameSays::presence;
   }
@@ -68,7 +92,7 @@ class Finder {
         return std::ranges::find(words, word) != words.end();
       });
       const auto kind = is_called_so ? time_finder_.kind_of(i) : std::nullopt;
-      const auto is_state = [](const std::string& text) { return read_state(text).has_value(); };
+      const auto is_state = [&](const std::string& text) { return state_of(text).has_value(); };
       if (kind && (kind != Stamp::Kind::number || table_.count(i, is_state) < table_.rows.size()))
         names.push_back(table_.names[i]);
     }
@@ -125,17 +149,51 @@ class Finder {
       table_.refuse("intervals, of which no column or several may name the sensor; say which in a map: sensor" +
                     table_.columns_in_words());
     }
-    shape.sensor = map_.sensor_column.empty() ? sensors.front() : table_.named(map_.sensor_column);
+    shape.sensor = map_.sensor_column.empty() ? std::vector{sensors.front()} : named(map_.sensor_column);
+  }
+  [[nodiscard]] std::vector<std::size_t> named(const std::vector<std::string>& names) const {
+    std::vector<std::size_t> columns;
+    for (const std::string& name : names) columns.push_back(table_.named(name));
+    return columns;
+  }
+
+  /// Two texts that no table of words has, or one beside a state that is known, may be states.
+  void require_words(std::size_t column, const std::string& keys) const {
+    std::set<std::string> words;
+    for (const auto& row : table_.rows) {
+      const std::string& text = row[column];
+      if (!is_empty_cell(text) && text != "unavailable" && text != "unknown") words.insert(text);
+      if (words.size() > 2) return;
+    }
+    if (words.size() != 2 || known_states(column).size() == 2) return;
+    const std::string &one = *words.begin(), &other = *std::next(words.begin());
+    if (is_number(one) && is_number(other) && state_of(one) != log_state::off) return;  // in order: 0 is first
+    const auto map = [&](const std::string& on, const std::string& off) {
+      return keys + "states: {on: [" + quoted_yaml(on) + "], off: [" + quoted_yaml(off) + "]}";
+    };
+    std::vector<std::string> maps;
+    if (state_of(one) != log_state::on && state_of(other) != log_state::off) maps.push_back(map(other, one));
+    if (state_of(one) != log_state::off && state_of(other) != log_state::on) maps.push_back(map(one, other));
+    table_.refuse_with("'" + one + "' and '" + other + "' in '" + table_.names[column] +
+                           "' may be states, of which no word says that it is motion",
+                       maps);
   }
 
   // Events.
 
   struct SensorAndState {
-    std::size_t sensor, state;
+    std::vector<std::size_t> sensor;
+    std::optional<std::size_t> state;  ///< none: each row is motion that begins
   };
   [[nodiscard]] std::string in_map(const SensorAndState& pair) const {
-    return "form: events, sensor: " + quoted_yaml(table_.names[pair.sensor]) +
-           ", state: " + quoted_yaml(table_.names[pair.state]);
+    return "form: events, sensor: " + quoted_yaml(table_.names[pair.sensor.front()]) +
+           ", state: " + quoted_yaml(table_.names[*pair.state]);
+  }
+  [[nodiscard]] static std::vector<SensorAndState> pairs_of(const std::vector<std::size_t>& sensor,
+                                                            const std::vector<std::size_t>& states) {
+    std::vector<SensorAndState> pairs;
+    for (const std::size_t i : states) pairs.push_back({sensor, i});
+    return pairs;
   }
   [[noreturn]] void refuse_pairs(const std::string& why, const std::vector<SensorAndState>& pairs) const {
     std::vector<std::string> maps;
@@ -147,7 +205,7 @@ class Finder {
   [[nodiscard]] const std::set<std::int32_t>& known_states(std::size_t column) const { return states_[column]; }
   [[nodiscard]] bool is_text(std::size_t column) const {
     return table_.is_mostly(
-        column, [](const std::string& text) { return !text.empty() && !is_number(text) && !read_state(text); });
+        column, [&](const std::string& text) { return !text.empty() && !is_number(text) && !state_of(text); });
   }
   /// Rows that have the same value in `a` have the same in `b`.
   [[nodiscard]] bool tells(std::size_t a, std::size_t b) const {
@@ -171,10 +229,10 @@ class Finder {
   }
 
   /// Columns that may hold the states of sensors that `sensor` names: called so; or called motion, or presence; or any.
-  [[nodiscard]] std::vector<std::size_t> states_beside(std::size_t sensor) const {
+  [[nodiscard]] std::vector<std::size_t> states_beside(const std::vector<std::size_t>& sensor) const {
     std::array<std::vector<std::size_t>, 3> by_rank;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      if (i == sensor || time_.has(i) || is_bookkeeping(i)) continue;
+      if (std::ranges::find(sensor, i) != sensor.end() || time_.has(i) || is_bookkeeping(i)) continue;
       if (says(i) == NameSays::state) by_rank[0].push_back(i);  // also where the first lines are of other quantities
       if (!has_states(i)) continue;
       if (is_called_motion(i)) by_rank[1].push_back(i);
@@ -214,11 +272,15 @@ class Finder {
   }
   [[nodiscard]] std::optional<SensorAndState> sensor_and_state() const {
     if (map_.form == LogMap::Form::wide) return std::nullopt;
-    if (!map_.sensor_column.empty() || !map_.state_column.empty()) {
-      if (map_.sensor_column.empty() || map_.state_column.empty())
-        table_.refuse("a map of events names both columns, sensor and state");
-      return SensorAndState{table_.named(map_.sensor_column), table_.named(map_.state_column)};
+    if (!map_.sensor_column.empty() && !map_.state_column.empty())
+      return SensorAndState{named(map_.sensor_column), table_.named(map_.state_column)};
+    if (!map_.sensor_column.empty()) {
+      const std::vector<std::size_t> sensor = named(map_.sensor_column), states = states_beside(sensor);
+      if (states.size() > 1) refuse_pairs("several columns hold states of each sensor", pairs_of(sensor, states));
+      if (states.size() == 1) return SensorAndState{sensor, states.front()};
     }
+    if (map_.form == LogMap::Form::events && map_.state_column.empty() && map_.hold_s != LogMap::Seconds{})
+      return SensorAndState{named(map_.sensor_column), std::nullopt};
     if (map_.form == LogMap::Form::found && is_told_wide()) return std::nullopt;
     if (table_.header_line == 0) {
       if (const auto found = behind()) return found;
@@ -229,11 +291,14 @@ class Finder {
   /// Without names: a sensor and its state follow the time.
   [[nodiscard]] std::optional<SensorAndState> behind() const {
     const std::size_t sensor = time_.last() + 1;
-    if (sensor + 1 >= table_.n_columns() || !is_text(sensor) || !has_states(sensor + 1)) return std::nullopt;
     const auto is_casas = [](const std::string& text) { return is_casas_motion(text); };
+    std::size_t state = sensor + 1;
+    if (sensor < table_.n_columns() && table_.count(sensor, is_casas) > 0)  // whose places may follow
+      while (state + 1 < table_.n_columns() && !has_states(state)) ++state;
+    if (state >= table_.n_columns() || !is_text(sensor) || !has_states(state)) return std::nullopt;
     const bool is_sentence =  // "hall motion detected"
-        are_words_ && known_states(sensor + 1).size() < 2 && table_.count(sensor, is_casas) == 0;
-    return is_sentence ? std::nullopt : std::optional(SensorAndState{sensor, sensor + 1});
+        are_words_ && known_states(state).size() < 2 && table_.count(sensor, is_casas) == 0;
+    return is_sentence ? std::nullopt : std::optional(SensorAndState{{sensor}, state});
   }
   /// A column that is called as sensors' names are.
   [[nodiscard]] std::optional<SensorAndState> called() const {
@@ -247,28 +312,25 @@ class Finder {
     if (!std::ranges::all_of(sensors, is_constant)) std::erase_if(sensors, is_constant);
     if (sensors.empty()) return std::nullopt;
     const std::size_t sensor = finest(sensors).value_or(sensors.front());
-    const std::vector<std::size_t> states = states_beside(sensor);
+    const std::vector<std::size_t> states = states_beside({sensor});
     if (states.empty()) return std::nullopt;
     const bool is_one_device = table_.n_values(sensor) == 1 && says(states.front()) != NameSays::state;
     if (is_one_device && map_.form != LogMap::Form::events) return std::nullopt;
     if (!finest(sensors)) {
       std::vector<SensorAndState> pairs;
-      for (const std::size_t i : sensors) pairs.push_back({i, states.front()});
+      for (const std::size_t i : sensors) pairs.push_back({{i}, states.front()});
       refuse_pairs("several columns name sensors", pairs);
     }
-    if (states.size() > 1) {
-      std::vector<SensorAndState> pairs;
-      for (const std::size_t i : states) pairs.push_back({sensor, i});
-      refuse_pairs("several columns hold states of each '" + table_.names[sensor] + "'", pairs);
-    }
-    return SensorAndState{sensor, states.front()};
+    if (states.size() > 1)
+      refuse_pairs("several columns hold states of each '" + table_.names[sensor] + "'", pairs_of({sensor}, states));
+    return SensorAndState{{sensor}, states.front()};
   }
   /// Names that return in step, mostly with the same state, are readings, which hold for the time before them.
   void require_events(const SensorAndState& pair) const {
     constexpr std::size_t few_rows = 8;
-    std::map<std::string_view, std::vector<StateRow>> by_name;
+    std::map<std::string, std::vector<StateRow>> by_name;
     for (std::size_t i = 0; i < table_.rows.size(); ++i) {
-      if (times_[i]) by_name[table_.rows[i][pair.sensor]].push_back({*times_[i], {cell(i, pair.state)}});
+      if (times_[i]) by_name[name_in(i, pair.sensor)].push_back({*times_[i], {cell(i, *pair.state)}});
     }
     std::size_t n_readings = 0, n_others = 0;
     for (const auto& [name, rows] : by_name) {
@@ -285,29 +347,29 @@ class Finder {
         {in_map(pair)});
   }
   enum class Proof { none, open, given };
-  /// Whether rows tell that `pair` are sensors and their states, though no name says so.
-  [[nodiscard]] Proof proof_of(const SensorAndState& pair) const {
-    const std::size_t n = table_.n_values(pair.sensor), n_rows = table_.rows.size();
-    const bool has_names = is_text(pair.sensor);
-    const bool has_all = table_.count(pair.sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
-    const bool are_states = is_state_like(pair.sensor);
-    if (!has_all || known_states(pair.state).size() < 2) return Proof::none;
+  /// Whether rows tell that these are sensors and their states, though no name says so.
+  [[nodiscard]] Proof proof_of(std::size_t sensor, std::size_t state) const {
+    const std::size_t n = table_.n_values(sensor), n_rows = table_.rows.size();
+    const bool has_names = is_text(sensor);
+    const bool has_all = table_.count(sensor, [](const std::string& text) { return text.empty(); }) == 0 && n >= 2;
+    const bool are_states = is_state_like(sensor);
+    if (!has_all || known_states(state).size() < 2) return Proof::none;
     const bool are_few = n_rows < 8;
     if (2 * n > n_rows && !are_few) return Proof::none;
     const auto is_whole = [](const std::string& text) { return read_count(text).has_value(); };
-    if (!has_names && table_.count(pair.sensor, is_whole) < n_rows) return Proof::none;
+    if (!has_names && table_.count(sensor, is_whole) < n_rows) return Proof::none;
     std::vector<NamedRow> rows;
     std::vector<StateRow> merged;
     for (std::size_t i = 0; i < n_rows; ++i) {
       if (!times_[i]) continue;
-      rows.push_back({*times_[i], table_.rows[i][pair.sensor], cell(i, pair.state)});
+      rows.push_back({*times_[i], table_.rows[i][sensor], cell(i, state)});
       merged.push_back({*times_[i], {rows.back().state}});
     }
     const NamesProof names = proof_of_names(rows);
     constexpr double nearly_all = 0.9, many = 0.3, some = 0.1;  // assumed, as in log_proof.cpp
     const bool own = names.own_turns >= nearly_all, all = names.all_turns >= nearly_all;
     if (are_states) {  // another sensor's, one of which changes at a time; or numbers of sensors
-      const bool are_readings = proof_of_rows(state_rows({pair.sensor, pair.state})).are == RowsProof::Are::readings;
+      const bool are_readings = proof_of_rows(state_rows({sensor, state})).are == RowsProof::Are::readings;
       return !own || are_readings || (all && names.turns_at_switch == 0.0) ? Proof::none : Proof::open;
     }
     if (own && !all) return Proof::given;
@@ -328,28 +390,29 @@ class Finder {
       };
       const std::vector<std::string> told = told_names();
       if (!is_left_open(i) || (!told.empty() && std::ranges::none_of(told, has))) continue;
-      for (const std::size_t state : states_beside(i)) {
-        const Proof proof = proof_of({i, state});
-        if (proof == Proof::given) given.push_back({i, state});
-        if (proof == Proof::open) open.push_back({i, state});
+      for (const std::size_t state : states_beside({i})) {
+        const Proof proof = proof_of(i, state);
+        if (proof == Proof::given) given.push_back({{i}, state});
+        if (proof == Proof::open) open.push_back({{i}, state});
       }
     }
     if (given.size() == 1) return given.front();
     if (given.size() > 1) refuse_pairs("several columns may name sensors, or hold their states", given);
     if (open.empty()) return std::nullopt;
-    table_.refuse_with("'" + table_.names[open.front().sensor] + "' may name sensors, whose events these are, or not",
-                       {in_map(open.front()), "form: wide"});
+    table_.refuse_with(
+        "'" + table_.names[open.front().sensor.front()] + "' may name sensors, whose events these are, or not",
+        {in_map(open.front()), "form: wide"});
   }
 
   // Wide logs.
 
   [[nodiscard]] bool is_state_like(std::size_t column) const {
-    return has_states(column) && table_.count(column, [](const auto& text) { return !read_state(text); }) == 0;
+    return has_states(column) && table_.count(column, [&](const auto& text) { return !state_of(text); }) == 0;
   }
   [[nodiscard]] bool looks_like_motion(std::size_t column) const {
     if (says(column) == NameSays::other_quantity) return false;
-    const auto is_odd = [](const std::string& text) { return !read_state(text); };
-    const auto is_quantity = [](const std::string& text) { return !read_state(text) && is_number(text); };
+    const auto is_odd = [&](const std::string& text) { return !state_of(text); };
+    const auto is_quantity = [&](const std::string& text) { return !state_of(text) && is_number(text); };
     const bool is_called_so = says(column) == NameSays::motion;
     const std::size_t n_odd = table_.count(column, is_odd);
     if (n_odd == 0) return has_states(column) || is_called_so;
@@ -415,7 +478,13 @@ class Finder {
     }
   }
   void find_sensors(LogShape& shape) const {
-    for (const LogMap::Sensor& sensor : map_.sensors) shape.sensors.push_back(table_.named(sensor.in_log));
+    for (const LogMap::Sensor& sensor : map_.sensors) {
+      const auto is_here = [&](const LogMap::Sensor& other) {
+        return other.name == sensor.name && is_called(other.in_log);
+      };
+      if (is_called(sensor.in_log) || std::ranges::none_of(map_.sensors, is_here))  // else another file has this name
+        shape.sensors.push_back(table_.named(sensor.in_log));
+    }
     if (!shape.sensors.empty()) return;
     const bool are_ours = is_called("time_s");
     const bool is_beside_motion = has_motion();
@@ -450,7 +519,7 @@ class Finder {
   /// Whether anybody is there, beside how many.
   [[nodiscard]] bool is_told_by_count(std::size_t column, const LogShape& shape) const {
     const auto agrees = [&](const auto& row) {
-      const auto count = read_count(row[*shape.people]), state = read_state(row[column]);
+      const auto count = read_count(row[*shape.people]), state = state_of(row[column]);
       return count && state && (*count > 0) == (*state == log_state::on);
     };
     return shape.people && says(column) == NameSays::presence && known_states(column).size() > 1 &&
@@ -477,7 +546,7 @@ class Finder {
   [[nodiscard]] std::int32_t cell(std::size_t row, std::size_t column) const {
     const std::string& text = table_.rows[row][column];
     if (is_empty_cell(text)) return log_state::unknown;
-    const auto state = read_state(text);
+    const auto state = state_of(text);
     return state && *state != log_state::unknown ? *state : not_told;
   }
   [[nodiscard]] std::vector<StateRow> state_rows(const std::vector<std::size_t>& columns) const {
@@ -537,17 +606,32 @@ class Finder {
     }
     if (map_.longest_gap_s) shape.cadence.longest_gap_us = std::llround(*map_.longest_gap_s * 1e6);
   }
+  /// No column has states: they may be called otherwise, or rows are the begins of motion.
+  [[noreturn]] void refuse_wide(bool are_of_sentence) const {
+    std::vector<std::string> sensor;
+    bool has_more = false;
+    for (std::size_t i = 0; i < table_.n_columns() && map_.sensors.empty(); ++i) {
+      if (time_.has(i)) continue;
+      const bool may_be = says(i) == NameSays::nothing || says(i) == NameSays::state || is_called_motion(i);
+      if (!are_words_ && may_be && !is_bookkeeping(i)) require_words(i, "");
+      has_more = has_more || !is_text(i) || !sensor.empty();
+      sensor = {table_.names[i]};
+    }
+    if (!has_more) {
+      table_.refuse_with(
+          "no column is a motion sensor's, and each row may be motion that begins and lasts for some time",
+          {"form: events, " + (sensor.empty() ? "" : "sensor: " + quoted_yaml(sensor.front()) + ", ") + "hold_s: 5"});
+    }
+    table_.refuse((are_of_sentence ? "its lines are words, not a table: write a line a change, with its time, sensor "
+                                     "and state"
+                                   : "no column is a motion sensor's (0 and 1, on and off, true and false)") +
+                  table_.columns_in_words());
+  }
   void find_wide(LogShape& shape) const {
     find_people(shape);
     find_sensors(shape);
     const bool are_of_sentence = table_.header_line == 0 && are_words_ && map_.sensors.empty();
-    if (shape.sensors.empty() || are_of_sentence) {
-      table_.refuse((are_of_sentence
-                         ? "its lines are words, not a table with a column a sensor"
-                         : std::string("no column is a motion sensor's (0 and 1, on and off, true and false)")) +
-                    table_.columns_in_words() + "; name the sensors in a map, or the columns of events: " +
-                    settling_map("form: events, sensor: COLUMN, state: COLUMN"));
-    }
+    if (shape.sensors.empty() || are_of_sentence) refuse_wide(are_of_sentence);
     require_no_opposites(shape);
     const LogTimer timer(shape.time, nullptr, 0.0);
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
@@ -573,7 +657,8 @@ class Finder {
 }  // namespace
 
 std::size_t LogShape::n_read_fields() const {
-  std::size_t last = std::max({time.last(), sensor, state.value_or(0), people.value_or(0)});
+  std::size_t last = std::max({time.last(), state.value_or(0), people.value_or(0)});
+  for (const std::size_t column : sensor) last = std::max(last, column);
   if (end) last = std::max(last, end->last());
   for (const std::size_t column : sensors) last = std::max(last, column);
   return last + 1;
@@ -583,7 +668,7 @@ LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const st
                   LogMap::Rows before) {
   LogShape shape;
   shape.separator = separator_of(head.front().text);
-  const HeadTable table = table_of(head, shape.separator, file);
+  const HeadTable table = table_of(head, shape.separator, file, map.time_format);
   if (table.rows.empty())
     throw Error(ErrorCode::input, {file, table.header_line, 1}, "there are names of columns, but no row");
   shape.header_line = table.header_line;

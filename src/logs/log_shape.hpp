@@ -20,6 +20,7 @@ struct LogShape {
   int header_line = 0;             ///< 0: the first line is a row
   std::vector<std::string> names;  ///< of the columns; "column 3" where none is told
   TimeColumns time;
+  bool is_newest_first = false;  ///< each row of the head is earlier than the one before: nothing else is found then
   LogMap::Form form = LogMap::Form::wide;
 
   // Of a wide log.
@@ -34,8 +35,8 @@ struct LogShape {
   ReadingTracks::Cadence cadence;  ///< of readings; an interval of 0: no two rows have different times
 
   // Of events and intervals.
-  std::size_t sensor = 0;
-  std::optional<std::size_t> state;  ///< intervals may have none
+  std::vector<std::size_t> sensor;   ///< columns that name it together; none: the file does
+  std::optional<std::size_t> state;  ///< intervals may have none; events: each is the begin of motion
   std::optional<TimeColumns> end;    ///< of intervals
 
   /// Every row has so many fields; 0: at least those that are read, since what follows them is text or nothing.

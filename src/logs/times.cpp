@@ -121,6 +121,13 @@ void set_unit(TimeColumns& columns, double typical, std::string_view name) {
   columns.unit_us = columns.zero == TimeColumns::Zero::epoch ? *epoch_unit_us(typical) : is_in_ms ? 1e3 : 1e6;
 }
 
+/// In days since 1970; none: not days.
+static std::optional<double> day_of_zero(TimeColumns::Zero zero) {
+  constexpr double excel = -25'569.0, matlab = -719'529.0;
+  if (zero != TimeColumns::Zero::excel && zero != TimeColumns::Zero::matlab) return std::nullopt;
+  return zero == TimeColumns::Zero::excel ? excel : matlab;
+}
+
 LogTimer::LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s)
     : columns_(columns), zone_(zone), shift_us_(std::llround(shift_s * 1e6)) {}
 
@@ -132,8 +139,11 @@ LogTimer::Read LogTimer::read(std::span<const std::string_view> fields) {
 }
 
 LogTimer::Read LogTimer::read_text(std::string_view text) {
-  const auto stamp = parse_stamp(text, columns_.order);
-  if (!stamp) return {std::nullopt, "'" + std::string(text) + "' is no time that can be read"};
+  const auto stamp = parse_stamp(text, columns_.order, columns_.format);
+  if (!stamp) {
+    return {std::nullopt, "'" + std::string(text) + "' is no time that can be read" +
+                              (columns_.format.empty() ? "" : " by time_format, '" + columns_.format + "'")};
+  }
   const bool is_midnight = stamp->kind == Stamp::Kind::date && columns_.kind == Stamp::Kind::local;
   if (stamp->kind != columns_.kind && !is_midnight) {
     return {std::nullopt, "'" + std::string(text) + "' is another kind of time than those above it"};
@@ -144,13 +154,20 @@ LogTimer::Read LogTimer::read_text(std::string_view text) {
   if (clock() == LogClock::elapsed) return result;
   const int year = year_of(*result.us);
   if (year >= first_year && year < end_year) return result;
-  return {std::nullopt, "'" + std::string(text) + "' is in the year " + std::to_string(year) +
-                            ", and no log is from before 1990 or after 2099: was the clock set?"};
+  return {std::nullopt,
+          "'" + std::string(text) + "' is in the year " + std::to_string(year) +
+              ", and no log is from before 1990 or after 2099",
+          Oddity::unset};
 }
 
 LogTimer::Read LogTimer::from(const Stamp& stamp) {
   switch (stamp.kind) {
     case Stamp::Kind::number: {
+      if (const auto zero = day_of_zero(columns_.zero)) {
+        const double steps = (stamp.number + *zero) * us_per_day / columns_.unit_us;
+        const std::int64_t local_us = std::llround(steps) * std::llround(columns_.unit_us);
+        return zone_ == nullptr ? Read{local_us} : in_zone(local_us);
+      }
       const double us = stamp.number * columns_.unit_us;
       constexpr double most_us = 8e15;  // the year 2223
       if (std::abs(us) > most_us) return {std::nullopt, shortest_number(stamp.number) + " is too large for a time"};
@@ -191,7 +208,8 @@ LogClock LogTimer::clock() const noexcept {
   const bool is_number = columns_.kind == Stamp::Kind::number;
   if (columns_.kind == Stamp::Kind::time_of_day || (is_number && columns_.zero == TimeColumns::Zero::own))
     return LogClock::elapsed;
-  const bool is_told = is_number || columns_.kind == Stamp::Kind::absolute || zone_ != nullptr;
+  const bool are_days = is_number && day_of_zero(columns_.zero).has_value();
+  const bool is_told = (is_number && !are_days) || columns_.kind == Stamp::Kind::absolute || zone_ != nullptr;
   return is_told ? LogClock::zoned : LogClock::local;
 }
 

@@ -54,9 +54,15 @@ struct TimeColumns {
   std::size_t first = 0;
   std::vector<std::size_t> more{};  ///< what follows the first: a time of day, AM or PM, an offset
   Stamp::Kind kind = Stamp::Kind::local;
-  double unit_us = 1e6;                             ///< of numbers
-  enum class Zero { epoch, own } zero = Zero::own;  ///< of numbers: what they count from
+  double unit_us = 1e6;  ///< of numbers; of days what their times are rounded to
+  enum class Zero {
+    epoch,
+    own,
+    excel,             ///< days since 1899-12-30, as spreadsheets count them
+    matlab             ///< days since the year 0
+  } zero = Zero::own;  ///< of numbers: what they count from
   LogMap::Dates order = LogMap::Dates::found;
+  std::string format{};  ///< of a map
 
   [[nodiscard]] std::size_t last() const { return more.empty() ? first : std::max(first, std::ranges::max(more)); }
   [[nodiscard]] bool has(std::size_t column) const {
@@ -73,7 +79,12 @@ class LogTimer {
   /// The zone, if there is one, outlives it.
   LogTimer(const TimeColumns& columns, LogZone* zone, double shift_s);
 
-  enum class Oddity { none, ambiguous, missing };
+  enum class Oddity {
+    none,
+    ambiguous,
+    missing,
+    unset  ///< a year of clocks that weren't set
+  };
   struct Read {
     std::optional<std::int64_t> us;
     std::string fault = {};  ///< why there is none

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_line = 1'000'000;  // assumed: thousands of sensors
 constexpr std::size_t piece = 1U << 16U;
 
 fs::path readable(fs::path path) {
@@ -100,18 +99,27 @@ bool LineReader::fill() {
   return !ended_;
 }
 
-std::optional<std::string_view> LineReader::next() {
+std::string LineReader::rest(std::size_t longest) {
+  std::string all;
+  while (const auto line = next(longest)) {
+    all.append(*line) += '\n';
+    if (all.size() > longest) refuse("more than " + std::to_string(longest / 1'000'000) + " MB of JSON in one piece");
+  }
+  return all;
+}
+
+std::optional<std::string_view> LineReader::next(std::size_t longest) {
   std::size_t searched = at_;
   std::size_t end = text_.find('\n', searched);
   while (end == std::string::npos) {
     searched = text_.size() - at_;  // from the line's begin, which fill() moves to the front
-    if (searched > longest_line) break;
+    if (searched > longest) break;
     if (!fill()) break;
     end = text_.find('\n', searched);
   }
   ++line_;
   const std::size_t stop = std::min(end, text_.size());
-  if (stop - at_ > longest_line) refuse("a line longer than " + std::to_string(longest_line / 1'000'000) + " MB");
+  if (stop - at_ > longest) refuse("a line longer than " + std::to_string(longest / 1'000'000) + " MB");
   if (end == std::string::npos && at_ == text_.size()) return std::nullopt;
   std::string_view line = std::string_view(text_).substr(at_, stop - at_);
   at_ = std::min(stop + 1, text_.size());

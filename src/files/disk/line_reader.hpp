@@ -25,9 +25,14 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
+  static constexpr std::size_t longest_line = 1'000'000;  ///< assumed: thousands of sensors
   /// The next line without its end, LF or CRLF; none after the last one. It is valid until the next call. Throws
-  /// Error: io; input, with line and column, for what is no text and for lines longer than a megabyte.
-  [[nodiscard]] std::optional<std::string_view> next();
+  /// Error: io; input, with line and column, for what is no text and for longer lines.
+  [[nodiscard]] std::optional<std::string_view> next(std::size_t longest = longest_line);
+  /// All that follows.
+  [[nodiscard]] std::string rest(std::size_t longest);
+  /// The next character.
+  [[nodiscard]] char front() const { return at_ < text_.size() ? text_[at_] : '\0'; }
   [[nodiscard]] Where where(int column = 1) const { return {path_.string(), line_, column}; }
   /// With the hash of all bytes, once there are no more lines.
   [[nodiscard]] InputFile file() const { return {path_.string(), hash_.hex()}; }

@@ -379,7 +379,7 @@ bool take_quoted(std::string_view& line, std::string& text) {
 }  // namespace
 
 char separator_of(const std::string& line) {
-  constexpr std::array separators{',', ';', '\t'};
+  constexpr std::array separators{',', ';', '\t', '|'};
   const auto n = [&](char c) { return std::ranges::count(line, c); };
   const char most = *std::ranges::max_element(separators, {}, n);
   return n(most) == 0 ? ' ' : most;

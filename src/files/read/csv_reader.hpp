@@ -122,7 +122,7 @@ class TimeColumn {
 
 // The fields of one line of a table. Private to io.
 
-/// What separates the fields of a header: the most frequent of comma, semicolon and tab; a space if there is none.
+/// What separates the fields of a header: the most frequent of comma, semicolon, tab and bar; a space if there is none.
 [[nodiscard]] char separator_of(const std::string& line);
 
 /// The fields of a line. '"' quotes, doubled within quotes; ' ' separates at every run of spaces and tabs. They live as

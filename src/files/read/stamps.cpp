@@ -1,8 +1,12 @@
 #include "files/read/stamps.hpp"
 
+#include <date/date.h>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <locale>
+#include <sstream>
 
 #include "files/disk/file.hpp"
 
@@ -17,6 +21,7 @@ class Scanner {
   explicit Scanner(std::string_view text) : text_(text) {}
 
   [[nodiscard]] bool at_end() const { return text_.empty(); }
+  [[nodiscard]] std::string_view rest() const { return text_; }
   [[nodiscard]] char front() const { return text_.empty() ? '\0' : text_.front(); }
   bool take(char c) {
     if (front() != c || text_.empty()) return false;
@@ -201,6 +206,115 @@ std::optional<Stamp> as_time_of_day(std::string_view text) {
   return Stamp{Stamp::Kind::time_of_day, *us, 0, 0.0};
 }
 
+/// What the date library reads: dates with names of months, before a time of day, and whole times.
+constexpr std::array date_patterns{"%d-%b-%y",  "%d-%b-%Y", "%d/%b/%Y",     "%d %b %Y",
+                                   "%b %d, %Y", "%b %d %Y", "%a, %d %b %Y", "%a, %b %d, %Y"};
+constexpr std::array moment_patterns{"%Y%m%d%H%M%S",    "%Y%m%dT%H%M%S",        "%Y%m%dT%H%M%SZ",
+                                     "%Y%m%dT%H%M%S%z", "%a %b %d %H:%M:%S %Y", "%a %b %d %H:%M:%S %Z %Y"};
+bool has_pattern(std::string_view format) { return format.find('%') != std::string_view::npos; }
+
+constexpr std::array<std::pair<std::string_view, const char*>, 18> zone_names{{{"CET", "Europe/Berlin"},
+                                                                               {"CEST", "Europe/Berlin"},
+                                                                               {"MEZ", "Europe/Berlin"},
+                                                                               {"MESZ", "Europe/Berlin"},
+                                                                               {"EET", "Europe/Helsinki"},
+                                                                               {"EEST", "Europe/Helsinki"},
+                                                                               {"WET", "Europe/Lisbon"},
+                                                                               {"WEST", "Europe/Lisbon"},
+                                                                               {"BST", "Europe/London"},
+                                                                               {"EST", "America/New_York"},
+                                                                               {"EDT", "America/New_York"},
+                                                                               {"CST", "America/Chicago"},
+                                                                               {"CDT", "America/Chicago"},
+                                                                               {"MST", "America/Denver"},
+                                                                               {"MDT", "America/Denver"},
+                                                                               {"PST", "America/Los_Angeles"},
+                                                                               {"PDT", "America/Los_Angeles"},
+                                                                               {"JST", "Asia/Tokyo"}}};
+
+/// The zone's name at the end of a text, which is left out there; empty if there is none.
+std::string_view take_zone_name(std::string_view& text) {
+  const std::size_t space = text.find_last_of(' ');
+  const std::string_view last = text.substr(space == std::string_view::npos ? 0 : space + 1);
+  const auto known = std::ranges::find(zone_names, last, [](const auto& zone) { return zone.first; });
+  const bool is_twice = space != std::string_view::npos && (last == "UTC" || known != zone_names.end());
+  if (known == zone_names.end() && !is_twice) return {};
+  text.remove_suffix(text.size() - (is_twice ? space : 0));
+  return is_twice ? std::string_view() : known->first;  // Go's "+0000 UTC" says it twice
+}
+
+template <typename Time>
+struct ByPattern {
+  Time time{};
+  std::string zone{};
+  std::chrono::minutes ahead{std::chrono::minutes::min()};  ///< none
+  std::string_view rest{};                                  ///< of the text
+};
+template <typename Time>
+std::optional<ByPattern<Time>> by_pattern(std::string_view text, const char* pattern) {
+  std::istringstream in{std::string(text)};
+  in.imbue(std::locale::classic());
+  ByPattern<Time> read;
+  if (date::from_stream(in, pattern, read.time, &read.zone, &read.ahead).fail()) return std::nullopt;
+  if (in.peek() != std::istringstream::traits_type::eof())
+    read.rest = text.substr(static_cast<std::size_t>(in.tellg()));
+  return read;
+}
+
+std::optional<Stamp> by_whole_pattern(std::string_view text, const char* pattern) {
+  const auto read = by_pattern<date::local_time<std::chrono::nanoseconds>>(text, pattern);
+  if (!read || !read->rest.empty()) return std::nullopt;
+  const std::int64_t us = std::chrono::floor<std::chrono::microseconds>(read->time.time_since_epoch()).count();
+  const bool is_utc = std::string_view(pattern).ends_with("SZ") || read->zone == "UTC" || read->zone == "GMT";
+  const auto named = std::ranges::find(zone_names, read->zone, [](const auto& zone) { return zone.first; });
+  if (read->ahead == std::chrono::minutes::min() && !is_utc)
+    return Stamp{Stamp::Kind::local, us, 0, 0.0, named == zone_names.end() ? std::string_view() : named->first};
+  const auto offset_s = is_utc ? 0 : static_cast<std::int32_t>(60 * read->ahead.count());
+  return Stamp{Stamp::Kind::absolute, us - offset_s * us_per_s, offset_s, 0.0};
+}
+
+/// What follows a date: nothing, or a time of day, with an offset or the name of a zone.
+std::optional<Stamp> behind_date(Scanner scan, std::int64_t day) {
+  if (scan.at_end()) return Stamp{Stamp::Kind::date, day, 0, 0.0};
+  const bool has_word = scan.take(',') || scan.take_word(" at ");  // JavaScript's "5/24/2019, 7:50:03 PM"
+  if (!has_word && !scan.take_one_of("Tt _:")) return std::nullopt;
+  scan.skip_spaces();
+  const auto time = time_of_day(scan);
+  scan.skip_spaces();
+  if (!time) return std::nullopt;
+  std::string_view rest = scan.rest();
+  const std::string_view zone = take_zone_name(rest);
+  scan = Scanner(rest);
+  const Offset ahead = offset(scan);
+  if (ahead.kind == Offset::Kind::wrong) return std::nullopt;
+  if (ahead.kind == Offset::Kind::none) return Stamp{Stamp::Kind::local, day + *time, 0, 0.0, zone};
+  return Stamp{Stamp::Kind::absolute, day + *time - ahead.s * us_per_s, ahead.s, 0.0};
+}
+
+/// With names of months, or digits alone.
+std::optional<Stamp> by_patterns(std::string_view text) {
+  constexpr std::string_view names = "jan feb mar apr may jun jul aug sep oct nov dec mon tue wed thu fri sat sun";
+  constexpr std::size_t shortest = 8;
+  if (text.size() < shortest) return std::nullopt;
+  const auto is_letter = [](char c) { return lower(c) >= 'a' && lower(c) <= 'z'; };
+  std::string word;
+  const auto letter = std::ranges::find_if(text, is_letter);
+  for (auto at = letter; at != text.end() && word.size() < 3; ++at) word += lower(*at);
+  const bool has_name = word.size() == 3 && names.find(word) != std::string_view::npos && letter - text.begin() < 4;
+  const bool is_compact = text.size() >= 14 && std::ranges::all_of(text.substr(0, 8), is_digit);
+  if (!has_name && !is_compact) return std::nullopt;
+  for (const char* pattern : moment_patterns) {
+    if (const auto stamp = by_whole_pattern(text, pattern)) return stamp;
+  }
+  for (const char* pattern : date_patterns) {
+    const auto read = by_pattern<date::sys_days>(text, pattern);
+    if (!read || date::year_month_day(read->time).year() < date::year(100)) continue;
+    const auto stamp = behind_date(Scanner(read->rest), us_per_day * read->time.time_since_epoch().count());
+    if (stamp) return stamp;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
@@ -230,27 +344,28 @@ std::optional<double> epoch_unit_us(double number) {
 
 std::optional<Stamp> parse_stamp(std::string_view text, Dates order) {
   text = trimmed(text);
-  if (text.empty() || text.size() > 64 || !(is_digit(text.front()) || text.front() == '-' || text.front() == '+'))
-    return std::nullopt;
+  if (text.empty() || text.size() > 64) return std::nullopt;
+  if (!is_digit(text.front()) && text.front() != '-' && text.front() != '+') return by_patterns(text);
   Scanner scan(text);
   const auto parts = date_parts(scan);
   if (!parts) {
-    auto stamp = as_time_of_day(text);
+    auto stamp = by_patterns(text);
+    if (!stamp) stamp = as_time_of_day(text);
     return stamp ? stamp : as_number(text);
   }
   const auto day = midnight(*parts, order);
-  if (!day) return std::nullopt;
-  if (scan.at_end()) return Stamp{Stamp::Kind::date, *day, 0, 0.0};
-  const bool has_comma = scan.take(',');  // JavaScript's "5/24/2019, 7:50:03 PM"
-  if (!has_comma && !scan.take_one_of("Tt ")) return std::nullopt;
-  scan.skip_spaces();
-  const auto time = time_of_day(scan);
-  scan.skip_spaces();
-  if (!time) return std::nullopt;
-  const Offset ahead = offset(scan);
-  if (ahead.kind == Offset::Kind::wrong) return std::nullopt;
-  if (ahead.kind == Offset::Kind::none) return Stamp{Stamp::Kind::local, *day + *time, 0, 0.0};
-  return Stamp{Stamp::Kind::absolute, *day + *time - ahead.s * us_per_s, ahead.s, 0.0};
+  const auto stamp = day ? behind_date(scan, *day) : std::nullopt;
+  return stamp ? stamp : by_patterns(text);
+}
+
+std::optional<Stamp> parse_stamp(std::string_view text, Dates order, const std::string& format) {
+  if (format.empty()) return parse_stamp(text, order);
+  text = trimmed(text);
+  return has_pattern(format) ? by_whole_pattern(text, format.c_str()) : as_number(text);
+}
+
+std::string zone_called(std::string_view name) {
+  return std::ranges::find(zone_names, name, [](const auto& zone) { return zone.first; })->second;
 }
 
 std::optional<DateOrder> order_of_date(std::string_view text) {

@@ -41,13 +41,19 @@ struct Stamp {
   std::int64_t us = 0;        ///< since 1970-01-01T00:00: UTC if absolute, else of the local clock
   std::int32_t offset_s = 0;  ///< of an absolute one: so much is local time ahead
   double number = 0.0;
+  std::string_view zone_name{};  ///< "CET", of a local one: says which zone it may be, but not its summer time
 };
 
 /// ISO 8601, what spreadsheets make of it, and JavaScript's local times: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00",
-/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "20190524 19:50:03", "0:00:34", "1743962401"; none for any other
-/// text. `order` counts where the year has two digits or comes last; months come first if neither it nor the numbers
-/// say otherwise. Days that don't exist, as 2025-02-30, are none.
+/// "12/22/2017 10:49:41 AM", "5/24/2019, 7:50:03 PM", "20190524 19:50:03", "0:00:34", "1743962401"; with names of
+/// months "25-Feb-2008 00:20:14", "March 02, 2026 at 03:28:42 PM"; none for any other text. `order` counts where the
+/// year has two digits or comes last; months come first if neither it nor the numbers say otherwise. Days that don't
+/// exist, as 2025-02-30, are none.
 [[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, Dates order);
+/// By strptime's pattern, "%d.%m.%Y %H.%M"; all of it. Empty: as above; a pattern without % is a number's.
+[[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, Dates order, const std::string& format);
+/// "Europe/Berlin" of "CET", as an example.
+[[nodiscard]] std::string zone_called(std::string_view name);
 
 /// What a text with a date tells of the order of dates; none: it has no date, or one that begins with a year of four
 /// digits.

@@ -187,7 +187,7 @@ TEST_CASE("intervals that can't be: faults name their line, and a map says what 
   map.time = {"column 2"};
   CHECK_THAT(fault_of(nameless, map), contains("name them in a map: time and end"));
   map.end = {"column 3"};
-  map.sensor_column = "column 1";
+  map.sensor_column = {"column 1"};
   const Log log = read_log_text(nameless, map);
   CHECK(sensors_of(log) == Texts{"7", "8"});
   CHECK(windows_of(log, 100.0) == Texts{"11111000001.", "00001100000."});
