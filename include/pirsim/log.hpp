@@ -177,6 +177,7 @@ namespace io {
 
 struct LogObserver {
   std::function<void(std::uint64_t rows)> read;  ///< now and then: so many rows so far; may throw to end the reading
+  std::optional<std::int64_t> now_us{};  ///< since 1970, UTC; no row is from later than a day after it. None: now
 };
 
 /// One log: several files are parts of it, in any order. Throws Error: io; input with all faults that could be told

@@ -62,7 +62,8 @@ Log read_log(const LogInputs& inputs, Verbosity verbosity) {
                            "written; name the room's zone (--time-zone Europe/Berlin)"});
   }
   if (verbosity != Verbosity::quiet)
-    std::cerr << io::name_of_input(inputs.files.front()) << " is read as " << io::form_in_words(log) << '\n';
+    std::cerr << io::name_of_input(inputs.files.front()) << " is read as " << io::form_in_words(log) << ": "
+              << tellable(io::sensors_in_words(log)) << '\n';
   tell(log.remarks, verbosity);
   return log;
 }

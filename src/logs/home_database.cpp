@@ -126,7 +126,7 @@ bool HomeDatabase::has_column(const std::string& table, const std::string& colum
 
 /// By the columns that are there rather than by the version: while a database is brought to a newer one, rows of both
 /// are in it. https://github.com/home-assistant/core/blob/dev/homeassistant/components/recorder/db_schema.py
-std::string HomeDatabase::query(std::span<const std::string> entities) const {
+std::string HomeDatabase::query(std::span<const std::string> entities) {
   const bool names_apart = has_column("states", "metadata_id") && has_column("states_meta", "entity_id");  // from 38 on
   const bool has_names = has_column("states", "entity_id");
   const bool has_seconds = has_column("states", "last_updated_ts");  // from 31 on
@@ -141,6 +141,7 @@ std::string HomeDatabase::query(std::span<const std::string> entities) const {
   const std::string name = !names_apart ? "s.entity_id"
                            : has_names  ? "COALESCE(m.entity_id, s.entity_id)"
                                         : "m.entity_id";
+  names_ = {name, names_apart ? " LEFT JOIN states_meta m ON m.metadata_id = s.metadata_id" : ""};
   const std::string from_text = "(julianday(s.last_updated) - 2440587.5) * 86400.0";
   const bool all_seconds =
       has_seconds && !(has_texts && has_rows("SELECT 1 FROM states WHERE last_updated_ts IS NULL"));
@@ -150,11 +151,25 @@ std::string HomeDatabase::query(std::span<const std::string> entities) const {
   std::vector<std::string> more;
   for (const std::string& entity : entities) more.push_back(in_sql(entity));
   return "SELECT " + std::string(has_seconds ? "s.last_updated_ts" : "NULL") + ", " +
-         (has_texts ? "s.last_updated" : "NULL") + ", " + name + ", s.state FROM states s" +
-         (names_apart ? " LEFT JOIN states_meta m ON m.metadata_id = s.metadata_id" : "") + " WHERE " + name +
-         " LIKE 'binary\\_sensor.%' ESCAPE '\\'" +
+         (has_texts ? "s.last_updated" : "NULL") + ", " + name + ", s.state FROM states s" + names_.second + " WHERE " +
+         name + " LIKE 'binary\\_sensor.%' ESCAPE '\\'" +
          (more.empty() ? "" : " OR " + name + " IN (" + joined(more, ", ") + ")") + " ORDER BY " + order +
          ", s.state_id";
+}
+
+/// Of each binary sensor that has one: "motion", "door".
+std::map<std::string, std::string, std::less<>> HomeDatabase::device_classes() const {
+  std::map<std::string, std::string, std::less<>> classes;
+  const bool is_apart = has_column("states", "attributes_id") && has_column("state_attributes", "shared_attrs");
+  if (!is_apart && !has_column("states", "attributes")) return classes;
+  const std::string text = is_apart ? "a.shared_attrs" : "s.attributes";
+  const Statement found =
+      prepare("SELECT DISTINCT " + names_.first + ", json_extract(" + text + ", '$.device_class') FROM states s" +
+              names_.second + (is_apart ? " JOIN state_attributes a ON a.attributes_id = s.attributes_id" : "") +
+              " WHERE CASE WHEN json_valid(" + text + ") THEN json_extract(" + text +
+              ", '$.device_class') IS NOT NULL ELSE 0 END");
+  while (step(found)) classes[text_of(found.get(), 0)] = text_of(found.get(), 1);
+  return classes;
 }
 
 /// When the last state before this moment was written.

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pirsim/input_file.hpp"
@@ -31,6 +32,8 @@ class HomeDatabase {
   static constexpr std::string_view header = "time\tsensor\tstate";
   /// The next line of a table of tabs; none after the last.
   [[nodiscard]] std::optional<std::string> next();
+  /// What Home Assistant takes an entity for, whatever it is called.
+  [[nodiscard]] std::map<std::string, std::string, std::less<>> device_classes() const;
   [[nodiscard]] InputFile file() const;
 
  private:
@@ -49,13 +52,14 @@ class HomeDatabase {
   [[nodiscard]] bool step(const Statement& statement) const;
   [[nodiscard]] bool has_column(const std::string& table, const std::string& column) const;
   [[nodiscard]] bool has_rows(const std::string& sql) const;
-  [[nodiscard]] std::string query(std::span<const std::string> entities) const;
+  [[nodiscard]] std::string query(std::span<const std::string> entities);
   void read_stops();
   [[nodiscard]] std::optional<std::int64_t> last_before(std::int64_t us, const std::string& text) const;
   [[nodiscard]] std::optional<StateChange> next_row();
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;
+  std::pair<std::string, std::string> names_;  ///< of entities, in SQL: the expression, and what it joins
   std::unique_ptr<sqlite3, Close> database_;
   Statement rows_;
   std::vector<std::int64_t> stops_us_;  ///< when Home Assistant stopped, and was started later; the next one last

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <ranges>
+#include <tuple>
 #include <utility>
 
 #include "logs/log_head.hpp"
@@ -355,6 +356,7 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
     std::vector<std::string> entities{reading.map.people};
     for (const LogMap::Sensor& sensor : reading.map.sensors) entities.push_back(sensor.in_log);
     database_.emplace(path, entities);
+    reading.classes.merge(database_->device_classes());
     head_.push_back({std::string(HomeDatabase::header), 1});
   } else {
     lines_.emplace(path);
@@ -367,8 +369,10 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
   n_read_fields_ = shape_.n_read_fields();
   values_.resize(shape_.sensors.size(), log_state::unknown);
   if (shape_.people) values_.push_back(log_state::unknown_count);
+  cells_.resize(shape_.form == LogMap::Form::wide ? values_.size() : 0);
   reading.rows = shape_.rows;
   reading.events.begin_file();
+  reading.order.restart();
   for (const std::string& name : shape_.doubtful) {
     remark("left out " + name, shape_.header_line, [&] {
       return "column '" + name +
@@ -537,44 +541,19 @@ LogMap LogFile::map_of_head() const {
 void LogReading::note_row(std::int64_t us, const std::string& path, int line) {
   first_us = std::min(first_us.value_or(us), us);
   last_us = std::max(last_us.value_or(us), us);
-  const std::int64_t month = us / (30 * us_per_day);
-  auto here = months.find(month);
-  if (here == months.end()) here = months.emplace(month, Month{us, us, {path, line, 1}}).first;
+  const std::int64_t length = std::min(us_per_day, std::int64_t{std::llround(map.longest_gap_s.value_or(1e6) * 1e6)});
+  auto here = busy.find(rounded_down(us, length));
+  if (here == busy.end()) here = busy.emplace(rounded_down(us, length), Busy{us, us, &path, line}).first;
   here->second.first_us = std::min(here->second.first_us, us);
   here->second.last_us = std::max(here->second.last_us, us);
   ++here->second.n_rows;
-  if (!map.longest_gap_s) return;
-  const auto [at, is_new] = busy.try_emplace(us / std::llround(*map.longest_gap_s * 1e6), Moments{us, us});
-  at->second = {std::min(at->second.first_us, us), std::max(at->second.last_us, us)};
 }
 
-void LogReading::require_years() const {
-  constexpr std::int64_t longest_us = 366 * us_per_day;  // assumed: 200 to 400 days; who pauses for longer says so
-  const auto is_wanted = [&](const Month& month) {
-    return (!from_us || month.last_us >= *from_us) && (!to_us || month.first_us <= *to_us);
-  };
-  const std::int64_t allowed_us =
-      std::max(longest_us, map.longest_gap_s ? std::int64_t{std::llround(*map.longest_gap_s * 1e6)} : longest_us);
-  std::uint64_t n_before = 0;
-  for (auto at = months.begin(); at != months.end() && std::next(at) != months.end(); ++at) {
-    const Month &before = at->second, &after = std::next(at)->second;
-    n_before += before.n_rows;
-    if (after.first_us - before.last_us <= allowed_us || !is_wanted(before) || !is_wanted(after)) continue;
-    const bool is_late = 2 * n_before >= n_rows;
-    const auto moment = [](std::int64_t us) { return to_text({us, 0}, LogClock::local).substr(0, 10); };
-    throw Error(ErrorCode::input, is_late ? after.where : before.where,
-                "nothing is told from " + moment(before.last_us) + " to " + moment(after.first_us) +
-                    ": was the clock set here? If so, read the parts by themselves (from, to), or say longest_gap_s in "
-                    "a map");
-  }
-}
-
-std::vector<LogReading::Moments> LogReading::silences() const {
+std::vector<LogReading::Moments> LogReading::silences(std::int64_t longer_than_us) const {
   std::vector<Moments> found;
-  const std::int64_t longest = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 0;
   for (auto at = busy.begin(); at != busy.end() && std::next(at) != busy.end(); ++at) {
     const Moments silence{at->second.last_us, std::next(at)->second.first_us};
-    if (silence.last_us - silence.first_us > longest) found.push_back(silence);
+    if (silence.last_us - silence.first_us > longer_than_us) found.push_back(silence);
   }
   return found;
 }
@@ -602,6 +581,12 @@ void LogFile::fault(std::string_view kind, int line, std::size_t column, Message
   if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
 }
 
+template <typename Message>
+void LogFile::leave_out(std::string_view kind, int line, Message message) {
+  if (reading_.n_left_out++ == 0) reading_.left_out = {Severity::error, {path_, line, 1}, message()};
+  remark(kind, line, [&] { return message() + ": the row is left out"; });
+}
+
 void LogFile::read() {
   constexpr std::uint64_t now_and_then = 1U << 14U;
   const auto take_and_tell = [&](std::string_view line, int number) {
@@ -615,22 +600,16 @@ void LogFile::read() {
 
 void LogFile::finish() {
   if (broken_) remark("last line", broken_->first, [] { return "the last line has too few fields: it is left out"; });
-  require_order();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const bool is_sensor = i < shape_.sensors.size();
+    CellCounts& all = reading_.columns[shape_.names[is_sensor ? shape_.sensors[i] : *shape_.people]];
+    if (all.n_other == 0) std::tie(all.odd_at, all.odd_text) = std::tie(cells_[i].odd_at, cells_[i].odd_text);
+    all.n_states += cells_[i].n_states;
+    all.n_other += cells_[i].n_other;
+  }
   if (shape_.form != LogMap::Form::wide || readings_ || n_rows_ == 0) return;
   for (const std::size_t column : shape_.sensors)  // until its last row, though that may change nothing
     reading_.events.note(*reading_.events.track(shape_.names[column]), last_us_);
-}
-
-/// A table whose rows often aren't later than those before them has another form.
-void LogFile::require_order() const {
-  if (reading_.map.rows != LogMap::Rows::found || n_disordered_ <= std::max<std::uint64_t>(1, n_rows_ / 100)) return;
-  throw Error(
-      ErrorCode::input, {path_, first_disordered_, 1},
-      with_maps(
-          std::to_string(n_disordered_) + " of " + counted(n_rows_, "row") +
-              " are no later than rows before them: they tell of several sensors, or clocks were put back, or they "
-              "are to be left out",
-          {std::string("rows: ") + (readings_ ? "readings" : "changes")}));
 }
 
 std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
@@ -704,17 +683,12 @@ void LogFile::take(std::string_view line, int number) {
   if (shape_.form == LogMap::Form::events) return take_event(*us, number);
   if (shape_.form == LogMap::Form::intervals) return take_interval(*us, number);
   read_values(number);
-  const bool is_disordered = n_rows_ > 0 && (readings_ ? *us <= last_us_ : *us < last_us_);
-  if (is_disordered && n_disordered_++ == 0) first_disordered_ = number;
-  ++n_rows_;
-  if (readings_) {
-    take_readings(*us, number);
-  } else if (!is_disordered) {
-    take_changes(*us, number);
-  } else {
-    remark("backward", number, [] { return "the times step back here; rows up to the last time are left out"; });
-  }
-  last_us_ = n_rows_ == 1 ? *us : std::max(last_us_, *us);
+  if (reading_.order.add(*us) && reading_.back_at.line == 0) reading_.back_at = {path_, number, 1};
+  const bool is_earlier = n_rows_++ > 0 && *us < last_us_;
+  last_us_ = is_earlier ? last_us_ : *us;
+  if (readings_) return take_readings(*us, number);
+  if (!is_earlier) return take_changes(*us, number);
+  leave_out("backward", number, [] { return std::string("the times step back here"); });
 }
 
 /// Of the sensors and people in this row.
@@ -725,17 +699,16 @@ void LogFile::read_values(int line) {
     if (keeps_empty && is_empty_cell(text)) continue;
     const auto state = read_state(text, reading_.map.states);
     values_[i] = state.value_or(log_state::unknown);
-    if (state) continue;
-    const std::string& name = shape_.names[shape_.sensors[i]];
-    remark("state of " + name, line,
-           [&] { return quoted(text) + " in column '" + name + "' is no state: it counts as unknown"; });
+    if (!state) cells_[i].add_odd(text, path_, line);
+    cells_[i].n_states += state ? 1 : 0;
   }
   if (!shape_.people) return;
   const std::string_view text = fields_[*shape_.people];
   if (keeps_empty && is_empty_cell(text)) return;
   const auto count = read_count(text);
   values_.back() = count.value_or(log_state::unknown_count);
-  if (!count) remark("count", line, [&] { return quoted(text) + " is no number of people: it counts as unknown"; });
+  if (!count) cells_.back().add_odd(text, path_, line);
+  cells_.back().n_states += count ? 1 : 0;
 }
 
 void LogFile::require_one_run(int line) {
@@ -756,13 +729,9 @@ void LogFile::take_readings(std::int64_t us, int line) {
   if ((reading_.from_us && stamp <= *reading_.from_us) || (reading_.to_us && stamp > *reading_.to_us)) return;
   const auto order = readings_->add(stamp, values_);
   if (order == ReadingTracks::Order::same)
-    remark("same time", line, [] { return "a second reading of the same time is left out"; });
-  if (order == ReadingTracks::Order::earlier) {
-    remark("backward", line, [&] {
-      return "the times step back here; readings up to the last time before the step are left out" +
-             std::string(timer_.clock() == LogClock::local ? " (were clocks put back? Say time_zone in a map)" : "");
-    });
-  }
+    leave_out("same time", line, [] { return std::string("a second reading has the same time"); });
+  if (order == ReadingTracks::Order::earlier)
+    leave_out("backward", line, [] { return std::string("the times step back here"); });
   if (readings_->n_changes() > limits::log_changes)
     throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
 }
@@ -795,17 +764,11 @@ void LogFile::take_unset(const std::string& why, int line) {
 
 /// What is no state: of another kind of sensor, or a sensor's fault. From there on nothing is known.
 void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, std::int32_t unknown, int line) {
-  ++track.n_other;
-  if (track.n_states == 0 && track.events.size() == 2) {  // of many in a row, the first and the last tell all
+  track.add_odd(fields_[*shape_.state], path_, line);
+  if (track.n_states == 0 && track.events.size() == 2)  // of many in a row, the first and the last tell all
     track.events.back().us = us;
-    track.is_sorted = track.events.front().us <= us;
-  } else {
-    reading_.events.add(track, us, unknown);
-  }
-  if (track.odd_text.empty()) {
-    track.odd_at = {path_, line, 0};
-    track.odd_text = fields_[*shape_.state];
-  }
+  else
+    (void)reading_.events.add(track, us, unknown);
 }
 
 EventTracks::Track* LogFile::track_of(std::string_view name, int line) {
@@ -864,6 +827,7 @@ void LogFile::take_event(std::int64_t us, int line) {
     return remark("same event", line, [&] { return "an event of " + quoted(name) + " stands here a second time"; });
   }
   if (!reading_.events.add(*track, us, *value)) {
+    if (reading_.back_at.line == 0) reading_.back_at = {path_, line, 1};
     remark("backward", line,
            [&] { return "the times of " + quoted(name) + " step back here; its events are put in order"; });
   }

@@ -112,19 +112,36 @@ struct LogReading {
   struct Moments {
     std::int64_t first_us, last_us;
   };
-  std::map<std::int64_t, Moments> busy{};  ///< of events, if silence tells: by times of the longest gap's length
-  struct Month {
+  /// Rows of a day, or of a stretch as long as the longest gap if that is shorter.
+  struct Busy {
     std::int64_t first_us, last_us;
-    Where where;  ///< of the first row that is read
+    const std::string* path;  ///< of the first row that is read,
+    int line;                 ///< and where it stands
     std::uint64_t n_rows = 0;
   };
-  std::map<std::int64_t, Month> months{};  ///< those in which there are rows: of 30 days
+  std::map<std::int64_t, Busy> busy{};  ///< those in which there are rows
+  // For the gate (log_gate.hpp).
+  std::map<std::string, CellCounts, std::less<>> columns{};  ///< of wide logs
+  StepsBack order{};                                         ///< of rows of wide logs
+  Where back_at{};                                           ///< the first row that steps back
+  std::uint64_t n_left_out = 0;                              ///< rows
+  std::optional<Issue> left_out{};                           ///< the first one, and why
 
+  std::map<std::string, std::string, std::less<>> classes{};  ///< of devices: "motion", "door"
+
+  /// What an entity is by its device class, or else by its name.
+  [[nodiscard]] NameSays says(const std::string& entity) const {
+    const auto found = classes.find(entity);
+    if (found == classes.end()) return what_name_says(entity);
+    const NameSays says = what_name_says(found->second);
+    return says == NameSays::motion || says == NameSays::presence ? says : NameSays::other_device;
+  }
   void note_row(std::int64_t us, const std::string& path, int line);
-  /// Throws Error(input) if nothing is told for a year: some clock wasn't set.
-  void require_years() const;
-  /// Longer than the longest gap: when nothing at all was written.
-  [[nodiscard]] std::vector<Moments> silences() const;
+  [[nodiscard]] bool is_wanted(std::int64_t from, std::int64_t to) const noexcept {
+    return (!from_us || to >= *from_us) && (!to_us || from <= *to_us);
+  }
+  /// Longer than that: when nothing at all was written.
+  [[nodiscard]] std::vector<Moments> silences(std::int64_t longer_than_us) const;
 };
 
 class LogFile {
@@ -135,6 +152,8 @@ class LogFile {
 
   [[nodiscard]] const LogShape& shape() const noexcept { return shape_; }
   [[nodiscard]] LogTimer& timer() noexcept { return timer_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] LogClock clock() const noexcept { return timer_.clock(); }
   /// None: events, or rows of changes.
   [[nodiscard]] std::optional<ReadingTracks>& readings() noexcept { return readings_; }
   /// The only sensor of a file that has one and doesn't name it.
@@ -164,7 +183,6 @@ class LogFile {
   void read_text_head(TextLines::Writer writer);
   [[nodiscard]] LogMap map_of_head() const;
   [[noreturn]] void refuse_head();
-  void require_order() const;
   void finish();
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
@@ -183,6 +201,9 @@ class LogFile {
   void fault(std::string_view kind, int line, std::size_t column, Message message);
   template <typename Message>
   void remark(std::string_view kind, int line, Message message);
+  /// A row that can't be used. message: why.
+  template <typename Message>
+  void leave_out(std::string_view kind, int line, Message message);
 
   std::string path_;
   LogReading& reading_;
@@ -203,9 +224,9 @@ class LogFile {
   std::vector<std::string> unquoted_;
   std::vector<std::int32_t> values_, last_values_;  ///< of a wide row: sensors, then people
   std::optional<std::int64_t> row_us_;              ///< of the row before
+  std::vector<CellCounts> cells_;                   ///< as values_
   std::int64_t last_us_ = 0;                        ///< of a wide row
-  std::uint64_t n_rows_ = 0, n_disordered_ = 0;     ///< of a wide log: of them are not later than the row before
-  int first_disordered_ = 0;                        ///< its line
+  std::uint64_t n_rows_ = 0;                        ///< of a wide log
   std::vector<std::string> run_;                    ///< which of several runs is read
 };
 

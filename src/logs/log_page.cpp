@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -251,6 +252,13 @@ Table gap_table(const Log& log, const LogFacts& facts) {
   return table;
 }
 
+std::string first_of(std::span<const std::string> names) {
+  constexpr std::size_t most = 12;
+  const auto first = names.first(std::min(most, names.size()));
+  return joined({first.begin(), first.end()}, ", ") +
+         (names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "");
+}
+
 /// What the tables' columns mean, and what isn't in them.
 std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
   std::vector<std::string> notes;
@@ -269,11 +277,7 @@ std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
               "the others have more.");
   }
   if (!log.others.empty()) {
-    constexpr std::size_t most = 12;
-    const std::vector<std::string> first(
-        log.others.begin(), log.others.begin() + static_cast<std::ptrdiff_t>(std::min(most, log.others.size())));
-    notes.push_back("Not read, since no motion sensor: " + joined(first, ", ") +
-                    (log.others.size() > most ? " and " + std::to_string(log.others.size() - most) + " more" : "") +
+    notes.push_back("Not read: " + first_of(log.others) +
                     (log.n_other_rows > 0 ? " (" + counted(log.n_other_rows, "row") + ")" : "") + ".");
   }
   if (log.n_other_lines > 0)
@@ -381,6 +385,12 @@ std::string form_in_words(const Log& log) {
   const std::string empty = log.map.empty == LogMap::Empty::unchanged ? " (an empty cell: unchanged)" : "";
   return form + empty + (log.source.empty() ? "" : " of " + log.source) + ", " + counted(log.sensors.size(), "sensor") +
          people_in_words(log);
+}
+
+std::string sensors_in_words(const Log& log) {
+  std::vector<std::string> names;
+  for (const LogTrack& track : log.sensors) names.push_back(track.in_log);
+  return first_of(names) + (log.others.empty() ? "" : "; not read: " + first_of(log.others));
 }
 
 std::string to_text(const Log& log, const LogFacts& facts) {

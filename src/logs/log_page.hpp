@@ -10,6 +10,8 @@ namespace pirsim::io {
 
 /// How it was read: "rows of changes, 2 sensors, no counts".
 [[nodiscard]] std::string form_in_words(const Log& log);
+/// Which columns or entities are its sensors, and what isn't read: "hall, desk; not read: heating".
+[[nodiscard]] std::string sensors_in_words(const Log& log);
 /// All that it tells, for a terminal.
 [[nodiscard]] std::string to_text(const Log& log, const LogFacts& facts);
 /// Days as lines, a line a sensor; of logs with very many, a line a day. Without a footer.

@@ -192,21 +192,21 @@ EventTracks::Track* EventTracks::track(std::string_view in_log) {
   if (const auto found = index_.find(in_log); found != index_.end()) return &tracks_[found->second];
   if (tracks_.size() == limits::log_columns) return nullptr;
   index_.emplace(in_log, tracks_.size());
-  return &tracks_.emplace_back(Track{std::string(in_log), {}});
+  return &tracks_.emplace_back(in_log);
 }
 
 bool EventTracks::add(Track& track, std::int64_t us, std::int32_t value) {
-  const bool is_in_order = track.events.empty() || track.events.back().us <= us;
-  track.is_sorted = track.is_sorted && is_in_order;
   note(track, us);
   track.events.push_back({us, 0, value});
   ++n_events_;
-  return is_in_order;
+  return !track.order.add(us);
 }
 
 void EventTracks::note(Track& track, std::int64_t us) {
-  if (track.parts.empty() || track.parts.back().file != file_)
+  if (track.parts.empty() || track.parts.back().file != file_) {
     track.parts.push_back({file_, us, us, track.events.size()});
+    track.order.restart();
+  }
   Track::FilePart& part = track.parts.back();
   part.first_us = std::min(part.first_us, us);
   part.last_us = std::max(part.last_us, us);
@@ -215,7 +215,7 @@ void EventTracks::note(Track& track, std::int64_t us) {
 std::vector<LogChange> changes_of(EventTracks::Track& track, const MotionEnds& ends,
                                   const std::function<void(std::int64_t)>& lost) {
   std::vector<LogChange> events = std::exchange(track.events, {});
-  if (!track.is_sorted) std::ranges::stable_sort(events, {}, &LogChange::us);
+  std::ranges::stable_sort(events, {}, &LogChange::us);
   if (ends.hold_us || ends.longest_us) events = with_ends(events, ends, lost);
   const auto same = [](const LogChange& a, const LogChange& b) { return a.value == b.value; };
   events.erase(std::unique(events.begin(), events.end(), same), events.end());

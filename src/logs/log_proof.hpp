@@ -1,6 +1,7 @@
 // Readings and events as they come in, put together to tracks.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "pirsim/log.hpp"
@@ -48,16 +50,54 @@ class ReadingTracks {
   std::size_t n_changes_ = 0;
 };
 
+/// How often a sensor's cells were states, and the first that was none.
+struct CellCounts {
+  std::uint64_t n_states = 0, n_other = 0;
+  Where odd_at{};
+  std::string odd_text{};
+
+  void add_odd(std::string_view text, const std::string& path, int line) {
+    if (n_other++ > 0) return;
+    odd_at = {path, line, 0};
+    odd_text = text;
+  }
+};
+
+/// How the times of rows step back, from one to the next.
+class StepsBack {
+ public:
+  /// Another file, which may tell of earlier times.
+  void restart() noexcept { is_first_ = true; }
+  /// Whether it is earlier than the row before.
+  bool add(std::int64_t us) {
+    if (std::exchange(is_first_, false)) last_us_ = latest_us_ = us;
+    const bool steps = us < last_us_;
+    n_steps_ += steps ? 1 : 0;
+    is_behind_ = us < latest_us_ || (is_behind_ && us == latest_us_);
+    n_behind_ += is_behind_ ? 1 : 0;
+    last_us_ = us;
+    latest_us_ = std::max(latest_us_, us);
+    farthest_us_ = std::max(farthest_us_, latest_us_ - us);
+    return steps;
+  }
+  [[nodiscard]] std::uint64_t n_steps() const noexcept { return n_steps_; }
+  [[nodiscard]] std::uint64_t n_behind() const noexcept { return n_behind_; }  ///< rows after a step, until the times are later than before
+  [[nodiscard]] std::int64_t farthest_us() const noexcept { return farthest_us_; }
+
+ private:
+  bool is_first_ = true, is_behind_ = false;
+  std::uint64_t n_steps_ = 0, n_behind_ = 0;
+  std::int64_t last_us_ = 0, latest_us_ = 0, farthest_us_ = 0;
+};
+
 /// Of all files; events may come in any order.
 class EventTracks {
  public:
-  struct Track {
+  struct Track : CellCounts {
+    explicit Track(std::string_view name) : in_log(name) {}
     std::string in_log;
-    std::vector<LogChange> events;
-    std::uint64_t n_states = 0, n_other = 0;
-    bool is_sorted = true;
-    Where odd_at{};  ///< the first text that is no state, of a sensor that had some
-    std::string odd_text{};
+    std::vector<LogChange> events{};
+    StepsBack order{};
     struct FilePart {
       std::size_t file;
       std::int64_t first_us, last_us;

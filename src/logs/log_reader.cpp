@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -9,6 +10,7 @@
 #include "files/read/reader_parts.hpp"
 #include "files/read/yaml.hpp"
 #include "logs/log_file.hpp"
+#include "logs/log_gate.hpp"
 #include "logs/log_head.hpp"
 #include "logs/log_proof.hpp"
 #include "model/core/text.hpp"
@@ -145,11 +147,12 @@ bool may_be_sensor(const EventTracks::Track& track) {
 }
 
 /// Which of the tracks are motion sensors, if no map says so.
-std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks, const std::string& people) {
+std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks, const LogReading& reading) {
+  const std::string& people = reading.map.people;
   std::vector<std::size_t> all, motion, casas;
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!may_be_sensor(tracks[i]) || (!people.empty() && tracks[i].in_log == people)) continue;
-    const NameSays says = what_name_says(tracks[i].in_log);
+    const NameSays says = reading.says(tracks[i].in_log);
     if (is_casas_motion(tracks[i].in_log)) casas.push_back(i);
     if (says == NameSays::motion || says == NameSays::presence) motion.push_back(i);
     if (says != NameSays::other_quantity && says != NameSays::other_device) all.push_back(i);
@@ -169,9 +172,9 @@ std::size_t track_of(const std::vector<EventTracks::Track>& tracks, const std::s
 }
 
 /// In the map's order, or by name.
-std::vector<std::size_t> chosen_sensors(const std::vector<EventTracks::Track>& tracks, const LogMap& map,
-                                        const Where& where) {
-  if (map.sensors.empty()) return motion_sensors(tracks, map.people);
+std::vector<std::size_t> chosen_sensors(LogReading& reading, const LogMap& map, const Where& where) {
+  const std::vector<EventTracks::Track>& tracks = reading.events.tracks();
+  if (map.sensors.empty()) return motion_sensors(tracks, reading);
   std::vector<std::size_t> chosen;
   for (const LogMap::Sensor& sensor : map.sensors) {
     if (sensor.in_log == map.people)
@@ -240,7 +243,8 @@ LogTrack event_track(EventTracks::Track& track, LogReading& reading, const Log& 
           : changes_of(track, ends,
                        remark("motion of '",
                               "' is unknown after longest_motion_s, since nothing more is told of what begins at "));
-  if (const auto silences = reading.silences(); !silences.empty()) changes = without(changes, silences, unknown);
+  if (const auto longest_s = reading.map.longest_gap_s)
+    changes = without(changes, reading.silences(std::llround(*longest_s * 1e6)), unknown);
   return {is_people ? "people" : name_of(log.map, track.in_log), track.in_log,
           clipped(std::move(changes), log.begin_us, log.end_us), track.n_states + track.n_other};
 }
@@ -286,7 +290,7 @@ std::string shortened_list(const std::vector<std::string>& names) {
 void finish_events(Log& log, LogReading& reading) {
   std::vector<EventTracks::Track>& tracks = reading.events.tracks();
   const Where where{log.files.front().path};
-  const std::vector<std::size_t> chosen = chosen_sensors(tracks, log.map, where);
+  const std::vector<std::size_t> chosen = chosen_sensors(reading, log.map, where);
   std::optional<std::size_t> people;
   if (!log.map.people.empty()) people = track_of(tracks, log.map.people, where);
   log.begin_us = std::max(*reading.first_us, reading.from_us.value_or(*reading.first_us));
@@ -304,12 +308,6 @@ void finish_events(Log& log, LogReading& reading) {
   for (const std::size_t i : chosen) {
     EventTracks::Track& track = tracks[i];
     require_parts(track, log.files);
-    if (!track.odd_text.empty()) {
-      reading.remarks.add("odd state", track.odd_at, [&] {
-        return "'" + track.odd_text + "' is no state of '" + track.in_log +
-               "': it counts as unknown, until its next event";
-      });
-    }
     log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
   }
   require_sensors(log, log.map.hold_s, "hold_s");
@@ -424,23 +422,6 @@ void take_columns(LogMap& map, const std::vector<std::unique_ptr<LogFile>>& file
   map.sensors = std::move(sensors);
 }
 
-void remark_constant_sensors(const Log& log, LogReading& reading) {
-  for (const LogTrack& track : log.sensors) {
-    const auto has = [&](std::int32_t state) {
-      return std::ranges::any_of(track.changes, [&](const LogChange& change) { return change.value == state; });
-    };
-    if (has(log_state::on) && has(log_state::off)) continue;
-    const std::string always = has(log_state::on)    ? "is never off"
-                               : has(log_state::off) ? "is never on"
-                                                     : "is never known";
-    const std::string hint = has(log_state::on) && !log.has_readings()
-                                 ? "; if its log tells motion alone, say `hold_s: {" + track.name + ": 30}` in a map"
-                                 : "";
-    reading.remarks.add("constant " + always, {log.files.front().path},
-                        [&] { return "sensor '" + track.name + "' " + always + hint; });
-  }
-}
-
 void check_names(const Log& log) {
   std::set<std::string> names;
   for (const LogTrack& track : log.sensors) {
@@ -491,6 +472,11 @@ void require_one_form(const LogFile& first, LogFile& other, LogFile& first_again
                       : "it has another form than the first file");
 }
 
+std::int64_t now_us() {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::microseconds>(since_1970).count();
+}
+
 }  // namespace
 
 static Log read_once(std::span<const std::filesystem::path> files, const LogMap& map, const LogObserver& observer) {
@@ -514,9 +500,9 @@ static Log read_once(std::span<const std::filesystem::path> files, const LogMap&
     log.files.push_back(opened.file());
   }
   if (reading.faults.count() > 0) throw Error(ErrorCode::input, reading.faults.issues(Severity::error));
-  log.clock = read.front()->timer().clock();
+  log.clock = read.front()->clock();
   require_few_unset(reading, log);
-  reading.require_years();
+  pass_times(reading, *read.front(), observer.now_us.value_or(now_us()));
   LogFile& first = *read.front();
   log.n_rows = reading.n_rows;
   log.source = first.source();
@@ -556,7 +542,7 @@ static Log read_once(std::span<const std::filesystem::path> files, const LogMap&
   complete(log.map, first, log);
   join_renamed(log);
   check_names(log);
-  remark_constant_sensors(log, reading);
+  pass_tracks(log, reading, first);
   log.remarks = reading.remarks.issues(Severity::warning);
   return log;
 }

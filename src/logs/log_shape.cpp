@@ -421,14 +421,19 @@ class Finder {
     return has_states(column) && (is_called_so || is_rare);
   }
   /// In numbers: `people_detected` is on and off.
-  [[nodiscard]] bool is_count(std::size_t column) const {
+  [[nodiscard]] std::size_t n_counts(std::size_t column) const {
     return table_.count(column, [](const std::string& text) {
       const bool is_word = !is_number(text) && read_state(text) != log_state::unknown;
       return read_count(text).has_value() && !is_word;
-    }) == table_.rows.size();
+    });
   }
+  [[nodiscard]] bool is_count(std::size_t column) const { return n_counts(column) == table_.rows.size(); }
+  /// Also if one number in a hundred is none of people: a door's counter falls below 0 now and then.
   [[nodiscard]] bool counts_people(std::size_t column) const {
-    return says(column) == NameSays::count && is_count(column);
+    const auto is_odd = [](const std::string& text) { return is_number(text) && !read_count(text); };
+    const std::size_t n_odd = table_.count(column, is_odd);
+    return says(column) == NameSays::count && n_odd <= std::max<std::size_t>(1, table_.rows.size() / 100) &&
+           n_counts(column) + n_odd == table_.rows.size();
   }
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
@@ -668,12 +673,13 @@ LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const st
                   LogMap::Rows before) {
   LogShape shape;
   shape.separator = separator_of(head.front().text);
-  const HeadTable table = table_of(head, shape.separator, file, map.time_format);
+  HeadTable table = table_of(head, shape.separator, file, map.time_format);
   if (table.rows.empty())
     throw Error(ErrorCode::input, {file, table.header_line, 1}, "there are names of columns, but no row");
   shape.header_line = table.header_line;
   shape.names = table.names;
   Finder(table, map, zone).find(shape, before);
+  shape.head = std::move(table);
   return shape;
 }
 

@@ -19,6 +19,7 @@ struct LogShape {
   char separator = ',';
   int header_line = 0;             ///< 0: the first line is a row
   std::vector<std::string> names;  ///< of the columns; "column 3" where none is told
+  HeadTable head;                  ///< the first rows
   TimeColumns time;
   bool is_newest_first = false;  ///< each row of the head is earlier than the one before: nothing else is found then
   LogMap::Form form = LogMap::Form::wide;

@@ -8,6 +8,7 @@ import csv
 import datetime
 import functools
 import json
+import re
 import shutil
 import subprocess
 import unittest
@@ -15,6 +16,23 @@ import unittest
 from program import DATA, PIRSIM, made_folder, main, run
 
 MADE = ("weights.csv", "counter.json", "calibration.json", "calibration.html", "recipe.yaml")
+
+
+def at(minute):
+    return f"2026-03-02T{7 + minute // 60:02d}:{minute % 60:02d}:00"
+
+
+# Logs that no motion sensors write: what each command says of them.
+IMPLAUSIBLE = {
+    "a count": ("time,a_motion\n" + "".join(f"{at(i)},{i % 4}\n" for i in range(1, 200)), "'2' is no state of 'a_motion'"),
+    "a name a row": ("id,start,end,room\n" + "".join(f"{i},{at(9 * i)},{at(9 * i + 4)},{'ab'[i % 2]}\n" for i in range(30)),
+                     "'id' is another one in each row"),
+    "two sensors of a name": ("time,node,child,state\n" + "".join(
+        f"{at(4 * i + k)},7,{k},{i % 2}\n" for i in range(60) for k in (0, 1)), "names a sensor that goes on while it is on"),
+    "an hour twice": ("time,a_motion\n" + "".join(f"{at(i if i < 180 else i - 60)},{i // 5 % 2}\n" for i in range(1, 400)),
+                      "stand in it a second time"),
+    "the year after next": ("time,a_motion\n" + "".join(f"2097-{at(i)[5:]},{i // 5 % 2}\n" for i in range(1, 200)), "later than tomorrow"),
+}
 
 
 def table(path):
@@ -91,6 +109,25 @@ class OwnRoom(unittest.TestCase):
     def test_the_folder_has_what_outputs_are_checked_for(self):
         self.assertEqual({file.name for file in self.made.iterdir()},
                          {"recipe.yaml", "weights.csv", "counter.json", "calibration.json", "calibration.html", "pool"})
+
+    def test_no_command_gets_a_log_that_isn_t_plausible_and_each_names_what_it_reads(self):
+        log, out = self.folder / "implausible.csv", self.folder / "nothing"
+        study = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml"
+        calls = {"log": (log,), "control": ("--log", log, "--delay", "5"), "count": (self.made / "counter.json", "--log", log),
+                 "calibrate": (self.recipe, "--log", log, "-o", out), "reconcile": (*study, "--measured", log)}
+        commands = re.findall(r"^  (\w+) ", run("--help")[0].split("Subcommands:")[1].split("Examples:")[0], re.M)
+        offer = {name for name in commands if re.search(r"--(log|measured) ", run(name, "--help")[0])}
+        self.assertEqual(offer | {"log"}, set(calls))
+        for kind, (text, told) in IMPLAUSIBLE.items():
+            log.write_text(text)
+            for command, words in calls.items():
+                with self.subTest(kind=kind, command=command):
+                    self.assertIn(told, run(command, *words, code=3)[1])
+        log.write_text("time,a_motion,heating,temperature\n" + "".join(f"{at(i)},{i // 7 % 2},{i // 9 % 2},21.5\n" for i in range(1, 200)))
+        for command in ("control", "count", "calibrate"):  # two of them want another number of sensors, and say so then
+            told = subprocess.run([PIRSIM, command, *calls[command]], capture_output=True, encoding="utf-8").stderr
+            self.assertIn("1 sensor, no counts: a_motion; not read: heating, temperature\n", told, command)
+        self.assertIn("Not read: heating, temperature.", run("log", log)[0])
 
     def test_the_verdict_is_told_and_weights_add_up(self):
         numbers = json.loads((self.made / "calibration.json").read_text())

@@ -104,8 +104,19 @@ def test_refusals_and_remarks(wide, tmp_path):
     with pytest.raises(pirsim.UsageError, match="a window lasts"):
         pirsim.read_log(wide, window_s=0)
     wide.write_text(WIDE.replace("02:01:00,1,1", "02:00:30,1,1"))
-    with pytest.warns(pirsim.InputWarning, match="a second reading of the same time"):
+    with pytest.warns(pirsim.InputWarning, match="a second reading has the same time"):
         pirsim.read_log(wide, {"rows": "readings"})
+
+
+@pytest.mark.parametrize(("text", "told"), [
+    ("time,motion\n" + "".join(f"{30 * i},{i % 4}\n" for i in range(1, 200)), "'2' is no state of 'motion'"),
+    ("id,start,end,room\n" + "".join(f"{i},{90 * i},{90 * i + 9},{'ab'[i % 2]}\n" for i in range(30)), "'id' is another one in each row"),
+    ("time,A\n" + "".join(f"2097-03-02 07:{i:02d}:00,{i // 5 % 2}\n" for i in range(60)), "later than tomorrow")])
+def test_a_log_that_isn_t_plausible_is_refused_as_by_the_commands(tmp_path, text, told):
+    file = tmp_path / "log.csv"
+    file.write_text(text)
+    with pytest.raises(pirsim.InputError, match=told):
+        pirsim.read_log(file)
 
 
 def test_pandas(wide):

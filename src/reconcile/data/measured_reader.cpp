@@ -684,6 +684,7 @@ Measured measured_of(const Log& log, const SceneSpec& scene, const ScriptSpec& s
   require_known_presence(script);
   const StudyFrame frame = frame_of(scene, script);
   Measured measured = LogRuns(log, frame, clock_of(script, script.trials.front())).measured();
+  for (const Issue& remark : log.remarks) measured.notes.push_back("The log: " + remark.message + ".");
   note_missing_trials(frame, measured);
   return measured;
 }
