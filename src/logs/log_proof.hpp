@@ -81,7 +81,8 @@ class StepsBack {
     return steps;
   }
   [[nodiscard]] std::uint64_t n_steps() const noexcept { return n_steps_; }
-  [[nodiscard]] std::uint64_t n_behind() const noexcept { return n_behind_; }  ///< rows after a step, until the times are later than before
+  /// Rows after a step, until the times are later than before.
+  [[nodiscard]] std::uint64_t n_behind() const noexcept { return n_behind_; }
   [[nodiscard]] std::int64_t farthest_us() const noexcept { return farthest_us_; }
 
  private:

@@ -85,8 +85,10 @@ TEST_CASE("gate: one row in a hundred may be left out, with a map too") {
 TEST_CASE("gate: states that are numbers are a count, not unknown") {
   for (const bool is_wide : {true, false}) {
     std::string text = is_wide ? "time,motion\n" : "time,sensor,state\n";
-    for (int i = 1; i <= 200; ++i)
-      text += at(300 * i + (is_wide ? 0 : 97 * i % 200)) + (is_wide ? "," : ",PIR,") + std::to_string(i % 5 < 3 ? 0 : i % 5 == 3 ? 1 : i) + '\n';
+    for (int i = 1; i <= 200; ++i) {
+      const int triggers = i % 5 < 3 ? 0 : (i % 5 == 3 ? 1 : i);
+      text += at(300 * i + (is_wide ? 0 : 97 * i % 200)) + (is_wide ? "," : ",PIR,") + std::to_string(triggers) + '\n';
+    }
     const Log log = settled_by_map(
         text, "'4' is no state of '" + std::string(is_wide ? "motion" : "PIR") + "', as are 40 of its 200 rows");
     CHECK(log.map.states.above == 0.0);

@@ -8,8 +8,10 @@
 #include "pirsim/log.hpp"
 #include "support/catch.hpp"
 #include "support/log_files.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
+using test::tests_dir;
 using Texts = std::vector<std::string>;
 
 namespace {
@@ -107,7 +109,7 @@ std::string map_with(const std::string& keys) { return keys.empty() ? std::strin
 Texts texts_of_offers() {
   Texts texts;
   const std::regex call(R"((with_maps|refuse_with|refuse_pairs)\()"), literal(R"re("((?:[^"\\]|\\.)*)")re");
-  const std::filesystem::path logs = std::filesystem::path(PIRSIM_TESTS_DIR).parent_path() / "src/logs";
+  const std::filesystem::path logs = tests_dir().parent_path() / "src/logs";
   for (const auto& file : std::filesystem::directory_iterator(logs)) {
     if (file.path().extension() != ".cpp") continue;
     std::ifstream in(file.path());

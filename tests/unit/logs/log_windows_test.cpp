@@ -128,7 +128,7 @@ TEST_CASE("a part of the windows is that part of all, also where several changes
     text += std::to_string(i / 3 * 4) + ",S" + std::to_string(random() % 3) + (random() % 2 == 0 ? ",on\n" : ",off\n");
   LogMap map;
   map.form = LogMap::Form::events;
-  map.sensor_column = "sensor";
+  map.sensor_column = {"sensor"};
   map.state_column = "state";
   const Log log = read_log_text(text, map);
   const LogWindows windows(log, 4.0);
