@@ -31,7 +31,18 @@ std::string version_text() {
   return program() + ", " + compiler() + ", Embree " + rt::embree_version() + " " + rt::instruction_set();
 }
 
+/// An empty text, as of a script's unset variable, is no value.
+void refuse_empty_words(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const bool is_unset = word.starts_with("--") && word.find('=') == word.size() - 1;
+    if (!word.empty() && !is_unset) continue;
+    throw Error(ErrorCode::usage, "an empty text stands behind '" + std::string(is_unset ? word : argv[i - 1]) + "'");
+  }
+}
+
 int run_command_line(int argc, char** argv) {
+  refuse_empty_words(argc, argv);
   Command app{"Headless simulator of passive-infrared motion sensors", "pirsim"};
   app.formatter(help_formatter());
   app.footer(first_steps);

@@ -325,22 +325,18 @@ void offer_map_report(CLI::App& command, std::filesystem::path& report) {
 
 namespace {
 
-/// What CLI11 lets pass: an empty text, as of a script's unset variable, and numbers that nothing can hold.
-void require_values(const CLI::App& command) {
+/// CLI11 lets numbers pass that nothing can hold.
+void require_numbers(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     const std::string type = option->get_type_name();  // with what is said of its range
     const bool is_whole = type.starts_with("INT") || type.starts_with("UINT"), is_number = type.starts_with("FLOAT");
     const auto holds = [&](const std::string& value) {
       if (is_whole) return io::parse_number<std::int64_t>(value) || io::parse_number<std::uint64_t>(value);
-      if (is_number) return std::isfinite(io::parse_number<double>(value).value_or(NAN));
-      return !value.empty();
+      return !is_number || std::isfinite(io::parse_number<double>(value).value_or(NAN));
     };
     for (const std::string& value : option->results()) {
       if (!holds(value))
-        throw Error(ErrorCode::usage, told_name(*option) + ": expected a " +
-                                          (is_whole    ? "whole number"
-                                           : is_number ? "number"
-                                                       : "value") +
+        throw Error(ErrorCode::usage, told_name(*option) + ": expected a " + (is_whole ? "whole number" : "number") +
                                           ", got '" + value + "'");
     }
   }
@@ -350,7 +346,7 @@ void require_values(const CLI::App& command) {
 
 void Command::pre_callback() {
   if (!get_subcommands().empty()) return;
-  require_values(*this);
+  require_numbers(*this);
   require_one_standard_input(*this);
   files.check();
 }

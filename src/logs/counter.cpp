@@ -350,7 +350,7 @@ Counter counter_from(const Told& told) {
   const std::size_t n = size(counter.n_states());
   double weights = 0.0;
   const auto add = [&](RoomModel model, const Told& of) {
-    model.weight = of.member("weight").number(0.0, 1.0 + 1e-6);
+    model.weight = of.member("weight").number(0.0, never_s);
     weights += model.weight;
     model.emissions = of.member("emissions").table(n, size(counter.n_symbols()), least_emission);
     counter.rooms.push_back(std::move(model));

@@ -261,23 +261,25 @@ Findings names_that_never_repeat(const Gated& all) {
 /// Where a sensor goes on while it is on, again and again, and a further column tells two apart, that belongs to the
 /// name.
 Findings names_in_two_columns(const Gated& all) {
-  constexpr double hardly = 0.2, nearly_all = 0.9;  // assumed
+  constexpr double fewest = 3.0,
+                   hardly = 0.1;  // assumed: telegrams get lost, and some sensors say again what they said
   if (all.shape.form != LogMap::Form::events || all.shape.sensor.empty() || !all.shape.state) return {};
-  const auto turns = [&](const std::vector<std::size_t>& columns) {
+  const auto repeats = [&](const std::vector<std::size_t>& columns) {
     const std::vector<std::string> names = names_in(all.shape, columns);
     std::vector<NamedRow> rows;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto state = read_state(all.shape.head.rows[i][*all.shape.state], all.reading.map.states);
       if (state && *state != log_state::unknown) rows.push_back({0, names[i], *state});
     }
-    return proof_of_names(rows).own_turns;
+    return (1.0 - proof_of_names(rows).own_turns) * static_cast<double>(rows.size());
   };
-  if (turns(all.shape.sensor) >= 1.0 - hardly) return {};
+  const double n_repeats = repeats(all.shape.sensor);
+  if (n_repeats < fewest) return {};
   for (const std::size_t column : columns_of_names(all.shape)) {
     std::vector<std::size_t> columns = all.shape.sensor;
     columns.push_back(column);
-    if (turns(columns) < nearly_all) continue;
-    if (turns({column}) >= nearly_all) columns = {column};
+    if (repeats(columns) > hardly * n_repeats) continue;
+    if (repeats({column}) <= hardly * n_repeats) columns = {column};
     std::vector<std::string> names;
     for (const std::size_t i : columns) names.push_back(all.shape.names[i]);
     return {{all.file(),

@@ -124,7 +124,8 @@ class Values(Case):
                 for value in ("", *(("nan", "inf", "9" * 400) if option.takes in self.NUMBERS else ())):
                     done = pirsim(*command, *ordered([(option, value)], rest))
                     self.assertEqual(done.returncode, 2, (command, option.name, value, done.stderr))
-                    self.assertRegex(done.stderr, r"^error: (the input|-\w|%s)" % re.escape(option.name), (command, value))
+                    told = r"(the input|-\w|%s)" % re.escape(option.name) if value else "an empty text stands behind"
+                    self.assertRegex(done.stderr, "^error: " + told, (command, value))
                     tried += 1
         self.assertGreater(tried, 400)
 
