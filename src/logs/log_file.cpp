@@ -346,6 +346,16 @@ std::string TextLines::since_first_midnight(std::int64_t us, int line, LogRemark
 }
 
 template <typename Message>
+void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
+  const bool are_parts = shape_.separator != ' ' && source().empty() && !json_;  // of the line as it stands
+  int at = 1;
+  for (std::size_t i = 0; i < std::min(column, fields_.size()) && are_parts; ++i)
+    at += static_cast<int>(fields_[i].size()) + 1;
+  reading_.faults.add(kind, {path_, line, at}, message);
+  if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
+}
+
+template <typename Message>
 void LogFile::remark(std::string_view kind, int line, Message message) {
   reading_.remarks.add(kind, {path_, line, 0}, message);
 }
@@ -562,6 +572,8 @@ std::vector<LogReading::Moments> LogReading::silences(std::int64_t longer_than_u
 void LogFile::refuse_head() {
   readings_.emplace(ReadingTracks::Cadence{1, 1}, values_);
   for (const HeadLine& line : head_) take(line.text, line.line);
+  if (broken_) refuse_fields(broken_->first, broken_->second);
+  if (reading_.unset.count() > 0) throw Error(ErrorCode::input, reading_.unset.issues(Severity::error));
   if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
   throw Error(ErrorCode::input, {path_, head_.front().line, 1},
               with_maps(head_.size() == 1 ? "one reading alone doesn't tell for how long it holds"
@@ -570,16 +582,6 @@ void LogFile::refuse_head() {
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
-
-template <typename Message>
-void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
-  const bool are_parts = shape_.separator != ' ' && source().empty() && !json_;  // of the line as it stands
-  int at = 1;
-  for (std::size_t i = 0; i < std::min(column, fields_.size()) && are_parts; ++i)
-    at += static_cast<int>(fields_[i].size()) + 1;
-  reading_.faults.add(kind, {path_, line, at}, message);
-  if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
-}
 
 template <typename Message>
 void LogFile::leave_out(std::string_view kind, int line, Message message) {
@@ -649,20 +651,21 @@ std::optional<std::int64_t> LogFile::time_of_row(LogTimer& timer, const TimeColu
   return read.us;
 }
 
+void LogFile::refuse_fields(int line, std::size_t n) {
+  fault("fields", line, 0,
+        [&] { return "expected " + counted(least_fields(), "field") + ", got " + std::to_string(n); });
+}
+
 void LogFile::take(std::string_view line, int number) {
-  const std::size_t wanted = shape_.n_fields();
-  const std::size_t least = wanted > 0 ? wanted : n_read_fields_;
-  const auto refuse_fields = [&](int at, std::size_t n) {
-    fault("fields", at, 0, [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(n); });
-  };
   if (broken_) refuse_fields(broken_->first, broken_->second);  // not the last line
   broken_.reset();
   if (!split_fields(line, shape_.separator, fields_, unquoted_)) {
     fields_.clear();
     return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
   }
-  if (wanted > 0 && fields_.size() > wanted) return refuse_fields(number, fields_.size());
-  if (fields_.size() < least) {
+  if (const std::size_t most = shape_.n_fields(); most > 0 && fields_.size() > most)
+    return refuse_fields(number, fields_.size());
+  if (fields_.size() < least_fields()) {
     broken_ = {number, fields_.size()};
     return;
   }

@@ -185,6 +185,8 @@ class LogFile {
   [[noreturn]] void refuse_head();
   void finish();
   void take(std::string_view line, int number);
+  [[nodiscard]] std::size_t least_fields() const { return std::max(shape_.n_fields(), n_read_fields_); }
+  void refuse_fields(int line, std::size_t n);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);
   void take_readings(std::int64_t us, int line);
   void take_changes(std::int64_t us, int line);

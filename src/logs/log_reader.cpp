@@ -705,7 +705,9 @@ void check_sensors(YamlMap& map, const std::vector<LogMap::Sensor>& sensors) {
     const bool is_first = std::find_if(sensors.begin(), before,
                                        [&](const auto& other) { return other.in_log == sensors[i].in_log; }) == before;
     if (is_first && !is_column_name(sensors[i].name)) continue;
-    const Where where = map.child("sensors")->where();
+    const YamlNode node = *map.child("sensors");
+    const std::vector<YamlNode> items = node.items();
+    const Where where = items.size() == sensors.size() ? items[i].where() : node.where();
     if (!is_first) map.faults().error(where, "sensors: '" + sensors[i].in_log + "' is named twice");
     if (is_column_name(sensors[i].name))
       map.faults().error(where, "sensors: '" + sensors[i].name +
