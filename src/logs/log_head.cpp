@@ -27,8 +27,6 @@ bool is_one_of(const Words& words, std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return word == text; });
 }
 
-constexpr std::size_t longest_state = 32;
-
 bool begins_with_one_of(const std::vector<std::string>& words, const auto& beginnings) {
   return std::ranges::any_of(words, [&](const std::string& word) {
     return std::ranges::any_of(beginnings, [&](std::string_view beginning) { return word.starts_with(beginning); });

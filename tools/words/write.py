@@ -25,6 +25,7 @@ def module():
         quoted = ", ".join(f'"{word}"'.replace(" ", "\0") for word in words)  # no line breaks within a word
         lines.append(textwrap.fill(f"{name.upper()} = frozenset({{{quoted}}})", 120, subsequent_indent="    ",
                                    break_on_hyphens=False, break_long_words=False).replace("\0", " "))
+    lines.append(f"LONGEST = {re.search(r'longest_state = ([0-9]+);', text)[1]}")
     return "\n".join(lines) + "\n"
 
 

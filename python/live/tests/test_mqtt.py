@@ -63,7 +63,7 @@ def test_sensors_that_say_nothing_or_no_word_of_motion_are_told(made, caplog):  
 
 
 TEXTS = {True: "1 1.0 1,0 +1 01 1e0 1. .1e1 ON Motion", False: "0 0.0 0,00 -0 00 0e5 .0 OFF No",
-         None: "2 -1 0.5 1_0 0x1 1e400 \u0661 1,0,0 1.0.0 1e inf nan ++1 on. \u212aon " + 25 * "0"}
+         None: "2 -1 0.5 1_0 0x1 1e400 \u0661 1,0,0 1.0.0 1e inf nan ++1 on. \u212aon " + (words.LONGEST + 1) * "0"}
 
 
 @pytest.mark.parametrize("state", TEXTS)

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace pirsim::io {
 
 // clang-format off
+/// What is longer is no state.
+inline constexpr std::size_t longest_state = 32;
 inline constexpr std::array on_words{
     "on", "true", "yes", "motion", "motion detected", "motion_detected", "motion active", "detected motion",
     "det", "detected", "active", "occupied", "moving", "motion detector", "movement", "present", "t", "y", "ein",

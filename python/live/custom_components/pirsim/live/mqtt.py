@@ -27,7 +27,7 @@ _UNHEARD_S = 300.0  # after which the log names the sensors that said nothing; a
 def state_of_word(text: str) -> State:
     """Motion, none, or unknown, as `pirsim log` reads words and numbers; unknown for what is neither."""
     word = text.strip().translate(_SMALL)
-    number = float(word.replace(",", ".", 1)) if len(word) <= 32 and _NUMBER.fullmatch(word) else None
+    number = float(word.replace(",", ".", 1)) if len(word) <= words.LONGEST and _NUMBER.fullmatch(word) else None
     return True if word in words.ON or number == 1 else False if word in words.OFF or number == 0 else None
 
 

@@ -7,3 +7,4 @@ OFF = frozenset({"off", "false", "no", "clear", "no motion", "no_motion", "motio
     "vacant", "not_detected", "unoccupied", "idle", "cleared (no motion detected)", "cleared", "no one", "no movement",
     "absent", "not present", "f", "n", "aus", "nein", "non", "falsch", "keine bewegung", "abwesend"})
 UNKNOWN = frozenset({"", "unavailable", "unknown", "none", "null", "nan", "na", "n/a", "<na>", "-", "?"})
+LONGEST = 32
