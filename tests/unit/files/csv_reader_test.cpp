@@ -79,7 +79,7 @@ TEST_CASE("CSV that breaks the rules is refused with line and column", "[csv]") 
   CHECK(refusal_of_table("a,b\n1\n1,2,3\n") == "f:2:1: error: expected 2 fields, got 1; 1 more like this");
   CHECK(refusal_of_table("a,a\n1,2\n") == "f:1:3: error: column 'a' appears twice");
   CHECK(refusal_of_table("a,b\n1,\"2\n3,4\n") == "f:2:3: error: this quote is never closed");
-  CHECK(refusal_of_table("a,b\n1,\"2\"x\n") == "f:2:6: error: expected a comma after the closing quote");
+  CHECK(refusal_of_table("a,b\n1,\"2\"x\n") == "f:2:6: error: expected ',' after the closing quote");
   CHECK(refusal_of_table("a,b\n1,2\"\n") == "f:2:4: error: a quote inside a field that doesn't begin with one");
   CHECK(refusal_of_table("a,b\n1,2,\n") == "f:2:1: error: expected 2 fields, got 3");
 }

@@ -41,7 +41,6 @@ std::vector<Provocation> provocations() {
       {rows("time,sensor,state", 9, zoned)},
       {rows("time,A", 40, [](int i) { return std::to_string(46083 + i / 2) + (i % 2 == 0 ? ".5," : ".7,") + bit(i); })},
       {rows("", 20, [](int i) { return std::to_string(i) + ',' + std::to_string(30 * i) + ',' + bit(i / 3); })},
-      {rows("time,A", 100, [](int i) { return epoch(30 * (i - i % 20 / 19)) + ',' + bit(i / 7); })},
       {rows("time,sensor,state", 20, [](int i) { return epoch(at(i)) + ",front_door," + bit(i); })},
       {"time,sensor,state\n1970-01-01 00:00:03,A,on\n2026-03-02 07:00:00,A,off\n2026-03-02 07:01:00,A,on\n2026-03-02 "
        "07:02:00,A,off\n"},
