@@ -87,6 +87,10 @@ TEST_CASE("times as programs write them") {
     const auto line = [&](const Event& e) { return formatted(way, e.s) + ',' + e.sensor + ',' + state_of(e); };
     check_truth(lines_of("time,sensor,state\n", line));
     check_truth(lines_of("", line));
+    const std::string text = way;
+    const bool is_utc =
+        text.ends_with('Z') || text.find("UTC") != std::string::npos || text.find("+0000") < text.size();
+    CHECK(read_log_text(lines_of("", line)).clock == (is_utc ? LogClock::zoned : LogClock::local));
   }
   for (const auto& [way, format] : {std::pair{"02.03.26 %02d.%02d.%02d", "%d.%m.%y %H.%M.%S"},
                                     {"2026/061 %02d:%02d:%02d", "%Y/%j %H:%M:%S"},
