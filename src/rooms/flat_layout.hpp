@@ -1,6 +1,7 @@
 // What areas, doors and sensors of drawn flats are called, so that the homes of a dataset share columns.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -58,21 +59,14 @@ struct FlatPlan {
   [[nodiscard]] Rectangle clear_floor(std::size_t room) const;
 };
 
+inline constexpr std::array all_sides{PlanSide::bottom, PlanSide::right, PlanSide::top, PlanSide::left};
+
 /// A room's wall on that side of the page, seen from inside.
 [[nodiscard]] Wall wall_of(const Rectangle& room, PlanSide side);
 /// What of it another room has behind it, or nothing.
 [[nodiscard]] std::optional<InnerWall> shared_wall(const Rectangle& room, PlanSide side, const Rectangle& other);
 /// Of rooms that touch, unless they are of one area.
 [[nodiscard]] std::vector<InnerWall> walls_between(const std::vector<FlatRoom>& rooms);
-
-/// What the author of a plan could do otherwise.
-struct PlanChange {
-  std::string text;  ///< "`hinge: left` at door 'bath' (line 14)"
-  HomePlanSpec plan;
-};
-/// Doors hung and placed otherwise, pieces without their place or left out, rooms that reach to each other, doors that
-/// are missing. Those that change least come first, and of equal ones those at the place of the fault.
-[[nodiscard]] std::vector<PlanChange> changes_of(const HomePlanSpec& plan, const Where& fault);
 
 /// Rooms and ways of a plan, in its order. Throws Error(input) for what doesn't fit together.
 [[nodiscard]] FlatPlan plan_of(const HomePlanSpec& plan);
