@@ -3,7 +3,6 @@
 #include <fnmatch.h>
 #include <sys/stat.h>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -444,53 +443,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where it is or will be: without links, also without those to what isn't there yet.
+/// Where it is or will be: without links, also without one to what isn't there yet.
 fs::path whole(const fs::path& file) {
-  std::error_code fault;
+  std::error_code fault, none;
   fs::path path = fs::weakly_canonical(fs::absolute(file, fault), fault);
-  if (fault) return file.lexically_normal();
   constexpr int most_links = 40;  // as the system follows
-  for (int n = 0; n < most_links; ++n) {
-    fs::path before, after;
-    bool is_led_on = false;
-    for (const fs::path& part : path) {
-      const bool is_link = !is_led_on && fs::is_symlink(fs::symlink_status(before / part, fault));
-      (is_led_on ? after : before) /= is_link ? fs::read_symlink(before / part, fault) : part;
-      is_led_on = is_led_on || is_link;
-    }
-    if (!is_led_on) break;
-    path = fs::weakly_canonical(after.empty() ? before : before / after, fault);
-  }
-  return path;
+  for (int n = 0; n < most_links && fs::is_symlink(fs::symlink_status(path, none)); ++n)
+    path = fs::weakly_canonical(path.parent_path() / fs::read_symlink(path, none), fault);
+  return fault ? file.lexically_normal() : path;
 }
 
-char in_other_case(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return static_cast<char>(std::isupper(byte) != 0 ? std::tolower(byte) : std::toupper(byte));
-}
-
-/// Does the folder's file system take large letters for small ones? Its own name tells, or that of one above.
-bool folds_case(const fs::path& folder) {
-  if (!folder.has_filename()) return false;
-  std::string name = folder.filename().string();
-  std::ranges::transform(name, name.begin(), in_other_case);
-  std::error_code fault;
-  if (name == folder.filename() || !fs::exists(folder, fault)) return folds_case(folder.parent_path());
-  return fs::equivalent(folder, folder.parent_path() / name, fault);
-}
-
-bool is_one_place(const fs::path& one, const fs::path& other) {
-  const auto alike = [](char a, char b) { return a == b || a == in_other_case(b); };
-  return one == other || (std::ranges::equal(one.string(), other.string(), alike) && folds_case(one.parent_path()));
-}
-
-/// Do they name one file? Links, hard ones too, and letters that a file system takes for one another are names of it.
+/// Do they name one file? Links, hard ones too, are names of it.
 bool is_one_file(const fs::path& one, const fs::path& other) {
   struct stat a {
   }, b{};
   const bool is_there = ::stat(one.c_str(), &a) == 0;
   if (is_there != (::stat(other.c_str(), &b) == 0)) return false;
-  return is_there ? a.st_dev == b.st_dev && a.st_ino == b.st_ino : is_one_place(whole(one), whole(other));
+  return is_there ? a.st_dev == b.st_dev && a.st_ino == b.st_ino : whole(one) == whole(other);
 }
 
 bool fits(const std::string& pattern, const std::string& name) {
@@ -520,8 +489,7 @@ bool takes(const NamedFile& one, const fs::path& file) {
 bool collide(const NamedFile& one, const NamedFile& other) {
   if (one.contents.empty()) return takes(other, one.file);
   if (other.contents.empty()) return takes(one, other.file);
-  return is_one_place(whole(one.file), whole(other.file)) &&
-         std::ranges::any_of(one.contents, [&](const std::string& pattern) {
+  return whole(one.file) == whole(other.file) && std::ranges::any_of(one.contents, [&](const std::string& pattern) {
            return std::ranges::find(other.contents, pattern) != other.contents.end();
          });
 }
