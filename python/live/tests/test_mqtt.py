@@ -35,7 +35,7 @@ def test_messages(payload, key, state):
 
 
 @pytest.mark.parametrize("options, told", [
-    (["--name", "a b"], "--name"), (["--off-at", "90"], "off_at"), (["--state", "nowhere/x"], "--state"),
+    (["--name", "a b"], "--name"), (["--off-at", "90"], "off_at"), (["--state", "nowhere/x"], "--state"), (["--state", "/dev/full"], "--state"),
     (["--port", "99999"], "--port"), (["--port", "0"], "--port"), (["--off-at", "nan"], "off_at"), (["--ca", "ca.pem"], "--tls"), (["--tls", "--ca", "ca.pem"], "no file 'ca.pem'"), (["--password-file", "p"], "--user"),
     (["--counter", "nonsense.json"], "nonsense.json: isn't a counter"), (["--sensor", "a=t", "--sensor", "b=t"], "one topic")])
 def test_faults_are_told_before_anything_is_connected(options, told, tmp_path):

@@ -53,6 +53,8 @@ def _check(options: argparse.Namespace) -> None:
         (options.ca is not None and not os.path.isfile(options.ca), f"--ca: there is no file {options.ca!r}"),
         (options.state is not None and not os.path.isdir(os.path.dirname(os.path.abspath(options.state))),
          f"--state: there is no folder for {options.state!r}"),
+        (options.state is not None and os.path.exists(options.state) and not os.path.isfile(options.state),
+         f"--state: {options.state!r} is no file"),
     ]
     for is_fault, told in faults:
         if is_fault:
