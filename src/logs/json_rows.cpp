@@ -107,6 +107,11 @@ std::string JsonRows::header() {
     throw Error(ErrorCode::input, {file_, 1, 1},
                 "expected a table, got JSON without a list of objects: save the log as CSV");
   }
+  constexpr std::size_t widest_alone = 500;  // assumed
+  if (rows_.size() == 1 && rows_.front().size() > widest_alone)
+    throw Error(
+        ErrorCode::input, {file_, 1, 1},
+        "expected a list of objects, a row each, got one object: of a table that pandas writes, orient='records'");
   for (const Row& row : rows_) {
     for (const auto& [key, text] : row) {
       if (std::ranges::find(columns_, key) == columns_.end()) columns_.push_back(key);

@@ -331,7 +331,12 @@ TextLines::Changes TextLines::of_esphome(std::string_view text, int line, LogRem
 /// Lines stand in the order in which they were written, so that a clock that steps back begins a day.
 std::string TextLines::since_first_midnight(std::int64_t us, int line, LogRemarks& remarks) {
   constexpr std::int64_t a_jitter_us = 60 * us_per_s, an_hour_twice_us = 7200 * us_per_s;  // assumed
+  constexpr std::uint64_t some = 10;
   const std::int64_t back_us = last_us_ - us;
+  if (back_us != 0) ++(back_us > 0 ? n_back_ : n_ahead_);
+  if (n_back_ > n_ahead_ + some)
+    throw Error(ErrorCode::input, {file_, line, 1},
+                "the times fall from line to line: turn the lines round, so that the oldest is the first");
   if (back_us > a_jitter_us) {
     days_us_ += us_per_day;
     if (back_us < an_hour_twice_us) {
@@ -656,6 +661,15 @@ void LogFile::refuse_fields(int line, std::size_t n) {
         [&] { return "expected " + counted(least_fields(), "field") + ", got " + std::to_string(n); });
 }
 
+/// As a logger that starts anew writes it. A column without a name was given one; R's numbers of rows have no field.
+bool LogFile::is_header_again() const {
+  const std::vector<std::string>& names = shape_.names;
+  if (shape_.header_line == 0 || fields_.size() > names.size() || fields_.size() + 1 < names.size()) return false;
+  const auto is_name = [](std::string_view field, const std::string& name) { return field.empty() || field == name; };
+  return std::equal(fields_.rbegin(), fields_.rend(), names.rbegin(), is_name) &&
+         std::ranges::any_of(fields_, [](std::string_view field) { return !field.empty(); });
+}
+
 void LogFile::take(std::string_view line, int number) {
   if (broken_) refuse_fields(broken_->first, broken_->second);  // not the last line
   broken_.reset();
@@ -663,14 +677,14 @@ void LogFile::take(std::string_view line, int number) {
     fields_.clear();
     return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
   }
+  if (is_header_again())
+    return remark("header", number, [] { return "the names of the columns stand here again: the line is left out"; });
   if (const std::size_t most = shape_.n_fields(); most > 0 && fields_.size() > most)
     return refuse_fields(number, fields_.size());
   if (fields_.size() < least_fields()) {
     broken_ = {number, fields_.size()};
     return;
   }
-  if (fields_[shape_.time.first] == shape_.names[shape_.time.first] && shape_.header_line > 0)
-    return remark("header", number, [] { return "the names of the columns stand here again: the line is left out"; });
   const auto us = time_of_row(timer_, shape_.time, number);
   if (!us) return;
   ++reading_.n_rows;

@@ -93,6 +93,7 @@ class TextLines {
   std::uint64_t n_other_ = 0;
   std::map<std::string, std::map<std::string, Change>> told_;  ///< the last one by device and property
   std::int64_t last_us_ = 0, days_us_ = 0;                     ///< of times of day
+  std::uint64_t n_back_ = 0, n_ahead_ = 0;                     ///< lines before and after the time of the one above
 };
 
 // One file of a log, row by row.
@@ -185,6 +186,7 @@ class LogFile {
   [[noreturn]] void refuse_head();
   void finish();
   void take(std::string_view line, int number);
+  [[nodiscard]] bool is_header_again() const;
   [[nodiscard]] std::size_t least_fields() const { return std::max(shape_.n_fields(), n_read_fields_); }
   void refuse_fields(int line, std::size_t n);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(LogTimer& timer, const TimeColumns& columns, int line);

@@ -265,7 +265,7 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
   if (is_header(table.rows.front(), time_format)) {
     table.header_line = head.front().line;
     table.names = table.rows.front();
-    table.rows.erase(table.rows.begin());
+    std::erase(table.rows, table.names);  // also again, as a logger that starts anew writes them
     const auto has_more = [&](const auto& row) { return row.size() == table.names.size() + 1; };
     if (separator != ' ' && !table.rows.empty() && std::ranges::all_of(table.rows, has_more))
       table.names.insert(table.names.begin(), "");  // R's numbers of rows have no name
@@ -283,10 +283,7 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
     throw Error(ErrorCode::input, {file, head[1].line, 1},
                 "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
   }
-  if (table.header_line > 0) {
-    std::erase_if(table.rows, is_other);
-    std::erase(table.rows, table.names);  // again, as a logger that starts anew writes them
-  }
+  if (table.header_line > 0) std::erase_if(table.rows, is_other);
   for (auto& row : table.rows) row.resize(n);
   return table;
 }
@@ -584,6 +581,9 @@ TimeColumns TimeFinder::find(const std::vector<std::string>& told) const {
   };
   for (const std::size_t i : columns) {
     if (!table_.is_mostly(i, is_unread) || (told.empty() && is_still(i))) continue;
+    if (kind_of(i) == Stamp::Kind::number)
+      table_.refuse_with("no column is called a time; '" + table_.names[i] + "' has numbers that may be times",
+                         {in_map(column_of(i, Stamp::Kind::number), table_.names)});
     table_.refuse(
         "'" + table_.rows.front()[i] + "' in '" + table_.names[i] + "' may be a time, but none that can be " +
         (map_.time_format.empty() ? "read" : "read by time_format, '" + map_.time_format + "'") +

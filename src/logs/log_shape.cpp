@@ -179,6 +179,22 @@ class Finder {
                        maps);
   }
 
+  /// Where one of two texts follows on the other, name by name of another column, they are states of its sensors.
+  void require_words_of_names() const {
+    constexpr double nearly_all = 0.9;  // assumed
+    const std::size_t n_rows = table_.rows.size();
+    for (std::size_t sensor = 0; sensor < table_.n_columns(); ++sensor) {
+      if (time_.has(sensor) || table_.n_values(sensor) < 2 || 2 * table_.n_values(sensor) > n_rows) continue;
+      for (std::size_t state = 0; state < table_.n_columns(); ++state) {
+        if (state == sensor || time_.has(state) || table_.n_values(state) != 2) continue;
+        std::vector<NamedRow> rows;
+        for (const auto& row : table_.rows)
+          rows.push_back({0, row[sensor], row[state] == table_.rows.front()[state] ? log_state::on : log_state::off});
+        if (proof_of_names(rows).own_turns >= nearly_all) require_words(state, in_map({{sensor}, state}) + ", ");
+      }
+    }
+  }
+
   // Events.
 
   struct SensorAndState {
@@ -615,6 +631,7 @@ class Finder {
   [[noreturn]] void refuse_wide(bool are_of_sentence) const {
     std::vector<std::string> sensor;
     bool has_more = false;
+    if (!are_words_ && map_.sensors.empty()) require_words_of_names();
     for (std::size_t i = 0; i < table_.n_columns() && map_.sensors.empty(); ++i) {
       if (time_.has(i)) continue;
       const bool may_be = says(i) == NameSays::nothing || says(i) == NameSays::state || is_called_motion(i);

@@ -187,9 +187,8 @@ LogTimer::Read LogTimer::from(const Stamp& stamp) {
 
 /// An hour that there is twice: the first time, until the times step back or once they did.
 LogTimer::Read LogTimer::in_zone(std::int64_t local_us) {
-  constexpr std::int64_t a_step_us = 1200 * us_per_s;  // assumed: rows that merely changed places are nearer
   const LogZone::Found found = zone_->utc_of(local_us);
-  const bool steps_back = local_us + a_step_us < last_local_us_;
+  const bool steps_back = local_us + put_back_us < last_local_us_;
   last_local_us_ = local_us;
   if (found.kind != LogZone::Kind::ambiguous) {
     pass_ = Pass::first;

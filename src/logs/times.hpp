@@ -16,6 +16,9 @@
 
 namespace pirsim::io {
 
+/// Rows that merely changed places are nearer; what steps back by more is a clock that was put back (assumed).
+inline constexpr std::int64_t put_back_us = 300 * us_per_s;
+
 // A time zone of the IANA data base, with its summer time.
 
 class LogZone {

@@ -209,6 +209,8 @@ TEST_CASE("gate: a column that never repeats names no sensor") {
   LogMap map;
   map.sensor_column = {"id"};
   CHECK_THAT(refusal(intervals, map), contains("it names no sensor"));
+  intervals += intervals.substr(intervals.rfind('\n', intervals.size() - 2) + 1);  // the last row once more
+  CHECK_THAT(refusal(intervals, map), contains("'id' is another one in nearly each row"));
 }
 
 TEST_CASE("gate: a further column that tells two sensors apart belongs to the name") {

@@ -155,6 +155,11 @@ TEST_CASE("states in other words") {
     check_truth(rows(on, off), "states: {on: [" + std::string(on) + "], off: [" + off + "]}");
     CHECK_THROWS_WITH(read_log_text(rows(on, off)), contains("states: {on: [\"" + std::string(on) + "\"], off:"));
   }
+  const std::string unknown_words = lines_of("Zeit;Melder;Zustand\n", [](const Event& e) {
+    return iso(e.s) + ';' + e.sensor + ';' + (e.is_on ? "rege" : "starr");
+  });
+  CHECK_THROWS_WITH(read_log_text(unknown_words), contains("'rege' and 'starr' in 'Zustand' may be states"));
+  check_truth(unknown_words, "form: events, sensor: Melder, state: Zustand, states: {on: [rege], off: [starr]}");
   check_truth(rows("off", "on"), "states: {on: [off], off: [on]}");  // inverted
   check_truth(rows("255", "0"), "states: {on: 255, off: 0}");
   check_truth(rows("255.0", "0"), "above: 0");
@@ -198,6 +203,11 @@ TEST_CASE("JSON that is no table is refused, however deep, long or cut off") {
   CHECK_THROWS_WITH(read_log_text("[[1, 2], [3]]\n"), contains("JSON without a list of objects"));
   CHECK_THROWS_WITH(read_log_text(R"({"status": "success", "data": {"resultType": "matrix", "result": []}})"),
                     contains("Prometheus' answer"));
+  std::string columns;
+  for (int i = 0; i < 600; ++i)
+    columns += (i == 0 ? "\"" : ", \"") + std::to_string(i) + "\": " + std::to_string(i % 2);
+  CHECK_THROWS_WITH(read_log_text("{\"time\": {" + columns + "}, \"hall\": {" + columns + "}}"),
+                    contains("orient='records'"));
 }
 
 TEST_CASE("texts that consoles and databases write") {

@@ -137,6 +137,18 @@ TEST_CASE("ESPHome's log: old and new words, colours, and days that pass without
   CHECK_THAT(odd.remarks.front().message, contains("step back by 30 min"));
 }
 
+TEST_CASE("a console's lines of which the newest is the first are refused, since each would begin a day") {
+  std::string newest_last, newest_first;
+  for (int i = 0; i < 40; ++i) {
+    const std::string line = "[08:" + std::to_string(10 + i) + ":00][D][binary_sensor:036]: 'PIR': New state is " +
+                             (i % 2 == 0 ? "ON\n" : "OFF\n");
+    newest_last += line;
+    newest_first = line + newest_first;
+  }
+  CHECK(read_log_text(newest_last).end_us == (8 * 60 + 49) * 60LL * 1'000'000);
+  CHECK_THAT(fault_of(newest_first), contains("turn the lines round"));
+}
+
 TEST_CASE("intervals: on from begin to end, off at all other times, overlapping ones united") {
   const Texts expected{"1110000111", "000111000."};
   for (const char* text :

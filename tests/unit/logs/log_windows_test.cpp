@@ -189,6 +189,15 @@ TEST_CASE("local times of a zone: an hour that there is twice, and one that ther
   REQUIRE(log.remarks.size() == 2);  // and that the sensor is never on
   CHECK(log.remarks[0].message.find("twice") != std::string::npos);
   CHECK(log.remarks[0].message.find("; 3 more like this") != std::string::npos);
+  // Events of two sensors, between which the clock is put back by ten minutes that can be seen.
+  std::string events = "time,sensor,state\n";
+  for (const char* row :
+       {"01:50:00,a,off", "01:50:00,b,off", "02:00:10,a,on", "02:00:30,a,off", "02:20:00,b,on", "02:20:30,b,off",
+        "02:10:00,b,on", "02:10:30,b,off", "02:11:00,a,on", "02:11:30,a,off", "03:30:00,a,on", "03:30:20,a,off"})
+    events += std::string("2025-10-26 ") + row + '\n';
+  const std::vector<LogChange>& of_b = read_log_text(events, map).sensors[1].changes;
+  REQUIRE(of_b.size() == 5);
+  CHECK(of_b[3].us - of_b[1].us == (3600LL - 600) * 1'000'000);
   // The same as they are, without a zone: the second pass is out of order.
   CHECK_THROWS_WITH(read_log_text(text), contains("log.csv:5:1: error: the times step back here") &&
                                              contains("{pirsim_log: 1, time_zone: Europe/Berlin}"));
