@@ -40,6 +40,7 @@ std::vector<Provocation> provocations() {
       {rows("time,hall_motion", 9, [](int i) { return "01/02/2026 07:0" + std::to_string(i) + ":30," + bit(i / 3); })},
       {rows("time,sensor,state", 9, zoned)},
       {rows("time,A", 40, [](int i) { return std::to_string(46083 + i / 2) + (i % 2 == 0 ? ".5," : ".7,") + bit(i); })},
+      {rows("Zeit,A", 40, [](int i) { return std::to_string(46083000 + 30 * i) + ',' + bit(i / 3); })},
       {rows("", 20, [](int i) { return std::to_string(i) + ',' + std::to_string(30 * i) + ',' + bit(i / 3); })},
       {rows("time,sensor,state", 20, [](int i) { return epoch(at(i)) + ",front_door," + bit(i); })},
       {"time,sensor,state\n1970-01-01 00:00:03,A,on\n2026-03-02 07:00:00,A,off\n2026-03-02 07:01:00,A,on\n2026-03-02 "
