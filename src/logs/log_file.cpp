@@ -441,7 +441,10 @@ void LogFile::find_shape() {
 void LogFile::take_json(std::string text) {
   const int number = lines_->where().line;
   if (has_no_data(text) || json_->add(text, number)) return;
-  (text += '\n') += lines_->rest(longest_document);
+  const std::string rest(lines_->rest(longest_document));
+  if (number > 1 && has_no_data(rest))
+    return remark("last line", number, [] { return "the last line ends within a value: it is left out"; });
+  (text += '\n') += rest;
   if (!json_->add(text, number)) throw Error(ErrorCode::input, {path_, number, 1}, "JSON that ends within a value");
 }
 

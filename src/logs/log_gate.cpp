@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -193,6 +194,13 @@ struct Gated {
     for (const std::size_t column : shape.sensor) names.push_back(shape.names[column]);
     return joined(names, "' with '");
   }
+  /// That names sensors by these columns and one more.
+  [[nodiscard]] std::string name_map(const std::vector<std::size_t>& columns, std::size_t more) const {
+    std::vector<std::string> names;
+    for (const std::size_t column : columns) names.push_back(shape.names[column]);
+    names.push_back(shape.names[more]);
+    return "state: " + quoted_yaml(shape.names[*shape.state]) + ", sensor: " + quoted_yaml(names);
+  }
 };
 
 /// One cell in a hundred may be no state; it counts as unknown.
@@ -241,7 +249,7 @@ std::vector<std::string> names_in(const LogShape& shape, const std::vector<std::
   std::vector<std::string> names;
   for (const auto& row : shape.head.rows) {
     std::string& name = names.emplace_back();
-    for (const std::size_t column : columns) name += row[column] + '\n';
+    for (const std::size_t column : columns) name += (name.empty() ? "" : "_") + row[column];
   }
   return names;
 }
@@ -282,15 +290,69 @@ Findings names_in_two_columns(const Gated& all) {
     std::vector<std::size_t> columns = all.shape.sensor;
     columns.push_back(column);
     if (repeats(columns) > hardly * n_repeats) continue;
-    if (repeats({column}) <= hardly * n_repeats) columns = {column};
-    std::vector<std::string> names;
-    for (const std::size_t i : columns) names.push_back(all.shape.names[i]);
+    const bool is_alone = repeats({column}) <= hardly * n_repeats;
     return {{all.file(),
              "'" + all.name_columns() + "' names a sensor that goes on while it is on, and '" +
                  all.shape.names[column] + "' tells two apart",
-             {"state: " + quoted_yaml(all.shape.names[*all.shape.state]) + ", sensor: " + quoted_yaml(names)}}};
+             {all.name_map(is_alone ? std::vector<std::size_t>{} : all.shape.sensor, column)}}};
   }
   return {};
+}
+
+/// What a device measures may stand in a column of its own: its motion, and its light.
+Findings kinds_in_a_column(const Gated& all) {
+  const LogShape& shape = all.shape;
+  if (shape.form != LogMap::Form::events || shape.sensor.empty() || !shape.state) return {};
+  const std::vector<std::string> names = names_in(shape, shape.sensor);
+  const auto is_read = [&](const std::string& name) {
+    return std::ranges::find(all.log.sensors, name, &LogTrack::in_log) != all.log.sensors.end();
+  };
+  for (const std::size_t column : columns_of_names(shape)) {
+    std::set<std::pair<bool, std::int32_t>> seen;  // is motion, state
+    std::set<std::pair<bool, std::string>> kinds;  // is motion, sensor
+    bool has_others = false;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string& kind = shape.head.rows[i][column];
+      if (kind.empty() || !is_read(names[i])) continue;
+      const NameSays says = what_name_says(kind);
+      const bool is_motion = says == NameSays::motion || says == NameSays::presence;
+      seen.emplace(is_motion,
+                   read_state(shape.head.rows[i][*shape.state], all.reading.map.states).value_or(log_state::unknown));
+      has_others = has_others || says == NameSays::other_device || says == NameSays::other_quantity ||
+                   kinds.contains({!is_motion, names[i]});
+      kinds.emplace(is_motion, names[i]);
+    }
+    const bool has_motion = !seen.empty() && seen.rbegin()->first;
+    if (!has_motion || !has_others || seen.size() < 3) continue;  // of two the state tells which: "motion", "quiet"
+    return {{all.file(),
+             "'" + shape.names[column] + "' tells motion from other things, and isn't read",
+             {all.name_map(shape.sensor, column)}}};
+  }
+  return {};
+}
+
+/// "hall_vacant", "no motion": what is on while nobody moves.
+bool says_contrary(std::string_view name) {
+  constexpr std::array contraries{" vacant ", " nomotion ",     " no motion ",     " no movement ", " no presence ",
+                                  " absent ", " not occupied ", " unoccupied ",    " idle ",        " clear ",
+                                  " frei ",   " unbelegt ",     " keine bewegung "};
+  const std::string words = " " + joined(words_of_name(name), " ") + " ";
+  return std::ranges::any_of(contraries, [&](const char* one) { return words.find(one) != std::string::npos; });
+}
+
+/// What is called so is no motion sensor, unless a map says that its states are turned round.
+Findings contrary_names(const Gated& all) {
+  const std::string state = all.shape.state ? all.shape.names[*all.shape.state] : std::string();
+  std::vector<std::string> contrary, others;
+  for (const LogTrack& sensor : all.log.sensors) {
+    const std::string& name = says_contrary(state) ? state : sensor.in_log;
+    (says_contrary(name) ? contrary : others).push_back(name);
+  }
+  if (contrary.empty() || !all.reading.map.states.on.empty()) return {};
+  return {{all.file(),
+           "'" + contrary.front() + "' is called the contrary of motion",
+           {others.empty() ? R"(states: {on: ["0", "off", "false", "no"], off: ["1", "on", "true", "yes"]})"
+                           : "sensors: " + quoted_yaml(others)}}};
 }
 
 /// What is called motion, or a count of people, is read, or it is said why not.
@@ -317,7 +379,8 @@ Findings motion_left_out(const Gated& all) {
                          {},
                          Severity::warning});
     }
-    if (!is_called_motion(name) || all.log.sensors.empty()) continue;
+    const CellCounts* cells = all.cells_of(name);
+    if (!is_called_motion(name) || all.log.sensors.empty() || (cells != nullptr && cells->n_other == 0)) continue;
     const std::string what = "'" + name + "' is called a motion sensor, and none of its cells tells whether it is on";
     if (has_motion)
       found.push_back({all.file(), what + ": it is left out", {}, Severity::warning});
@@ -424,7 +487,9 @@ Findings renamed_sensors(const Gated& all) {
 }
 
 constexpr std::array track_rules{
+    Rule<Gated>{"kinds in a column", kinds_in_a_column},
     Rule<Gated>{"odd states", odd_states},
+    Rule<Gated>{"contrary names", contrary_names},
     Rule<Gated>{"names that never repeat", names_that_never_repeat},
     Rule<Gated>{"names in two columns", names_in_two_columns},
     Rule<Gated>{"motion left out", motion_left_out},

@@ -172,6 +172,8 @@ NameSays what_name_says(std::string_view name) {
                                   "co2",      "humid", "slope",   "volt",        "batt",  "power",
                                   "pressure", "rssi",  "energy",  "linkquality", "lqi"};
   constexpr std::array devices{"door", "window", "switch", "lock", "hvac", "contact", "tamper"};
+  constexpr std::array asides{"tamper",  "batt",      "lowbat", "connectiv",
+                              "problem", "vibration", "avail",  "since"};  // that a motion sensor tells, too
   const std::string word = small_letters(name);
   if (is_one_of(times, word) || word.ends_with("_ts")) return NameSays::time;
   if (is_one_of(sensors, word)) return NameSays::sensor;
@@ -183,6 +185,8 @@ NameSays what_name_says(std::string_view name) {
   constexpr std::array countable{"occup", "presence", "person"};
   if (begins_with_one_of(words, counts) || (counts_something && begins_with_one_of(words, countable)))
     return NameSays::count;
+  const bool is_motion = begins_with_one_of(words, motions) || begins_with_one_of(words, presences);
+  if (is_motion && (begins_with_one_of(words, asides) || words.back() == "led")) return NameSays::other_quantity;
   if (begins_with_one_of(words, motions)) return NameSays::motion;
   if (begins_with_one_of(words, presences)) return NameSays::presence;
   if (begins_with_one_of(words, quantities)) return NameSays::other_quantity;
@@ -284,6 +288,7 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
                 "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
   }
   if (table.header_line > 0) std::erase_if(table.rows, is_other);
+  if (table.rows.size() > 2 && table.rows.back().size() < n) table.rows.pop_back();  // cut off
   for (auto& row : table.rows) row.resize(n);
   return table;
 }

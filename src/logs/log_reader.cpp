@@ -150,8 +150,11 @@ bool may_be_sensor(const EventTracks::Track& track) {
 std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks, const LogReading& reading) {
   const std::string& people = reading.map.people;
   std::vector<std::size_t> all, motion, casas;
+  const auto is_entity = [](const auto& track) { return track.in_log.starts_with("binary_sensor."); };
+  const bool is_home = std::ranges::any_of(tracks, is_entity);  // whose lights and automations are called motion, too
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (!may_be_sensor(tracks[i]) || (!people.empty() && tracks[i].in_log == people)) continue;
+    if (is_home && !is_entity(tracks[i]) && !tracks[i].in_log.starts_with("sensor.")) continue;
     const NameSays says = reading.says(tracks[i].in_log);
     if (is_casas_motion(tracks[i].in_log)) casas.push_back(i);
     if (says == NameSays::motion || says == NameSays::presence) motion.push_back(i);

@@ -38,14 +38,16 @@ class Finder {
     shape.time = time_;
     are_words_ = shape.separator == ' ';
     times_ = time_finder_.times(time_);
+    require_unit();
     shape.is_newest_first =
         map_.order == LogMap::Order::newest_first || (map_.order == LogMap::Order::found && times_fall());
     if (shape.is_newest_first) return;
-    const auto events = sensor_and_state();
+    auto events = sensor_and_state();
     if (map_.form == LogMap::Form::events && !events)
       table_.refuse("events need columns of sensors and their states; name them in a map: sensor and state");
     shape.form = events ? LogMap::Form::events : LogMap::Form::wide;
     if (events) {
+      if (events->state && map_.state_column.empty()) take_new_state(*events);
       if (events->state) require_words(*events->state, in_map(*events) + ", ");
       if (map_.form == LogMap::Form::found && events->state) require_events(*events);
       shape.sensor = events->sensor;
@@ -72,6 +74,15 @@ class Finder {
     }
     return n_back >= fewest && 10 * n_back >= 9 * (n_back + n_on);
   }
+  /// Whole thousands are Arduino's milliseconds, or seconds.
+  void require_unit() const {
+    const std::string& name = table_.names[time_.first];
+    const bool is_open = time_.kind == Stamp::Kind::number && time_.zero == TimeColumns::Zero::own && !unit_in(name);
+    const auto is_whole = [](const auto& us) { return us.value_or(0) % (1000 * us_per_s) == 0; };
+    if (!is_open || !map_.time_format.empty() || times_.size() < 3 || !std::ranges::all_of(times_, is_whole)) return;
+    table_.refuse_with("'" + name + "' counts whole thousands, which may be milliseconds or seconds",
+                       {"time_format: milliseconds", "time_format: seconds"});
+  }
   /// Of a row: sensors may be named in several columns.
   [[nodiscard]] std::string name_in(std::size_t row, const std::vector<std::size_t>& columns) const {
     std::vector<std::string> names;
@@ -88,10 +99,7 @@ class Finder {
   [[nodiscard]] std::vector<std::string> times_called(std::span<const std::string_view> words) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < table_.n_columns(); ++i) {
-      const bool is_called_so = std::ranges::any_of(words_of_name(table_.names[i]), [&](const std::string& word) {
-        return std::ranges::find(words, word) != words.end();
-      });
-      const auto kind = is_called_so ? time_finder_.kind_of(i) : std::nullopt;
+      const auto kind = has_word(i, words) ? time_finder_.kind_of(i) : std::nullopt;
       const auto is_state = [&](const std::string& text) { return state_of(text).has_value(); };
       if (kind && (kind != Stamp::Kind::number || table_.count(i, is_state) < table_.rows.size()))
         names.push_back(table_.names[i]);
@@ -101,8 +109,8 @@ class Finder {
   /// A begin and an end in each row, called so by the header or a map: two times alone may be when something was seen
   /// and when it was written down.
   [[nodiscard]] bool find_intervals(LogShape& shape) const {
-    constexpr std::array<std::string_view, 4> begins{"start", "begin", "started", "from"};
-    constexpr std::array<std::string_view, 6> ends{"end", "stop", "ended", "stopped", "finish", "to"};
+    constexpr std::array<std::string_view, 7> begins{"start", "begin", "started", "from", "beginn", "anfang", "von"};
+    constexpr std::array<std::string_view, 8> ends{"end", "stop", "ended", "stopped", "finish", "to", "ende", "bis"};
     if (map_.form == LogMap::Form::wide || map_.form == LogMap::Form::events) return false;
     const bool is_told = map_.form == LogMap::Form::intervals || !map_.end.empty();
     if (!is_told && is_told_wide()) return false;
@@ -244,6 +252,40 @@ class Finder {
     return says(column) == NameSays::nothing && !is_other;
   }
 
+  /// Whether `old` tells in each row what `now` told in the sensor's row before; `assumed`: a tenth of them got lost.
+  [[nodiscard]] bool is_before(const std::vector<std::size_t>& sensor, std::size_t old, std::size_t now) const {
+    std::map<std::string, std::size_t> last;
+    std::size_t n_turns = 0, n_odd = 0;
+    for (std::size_t i = 0; i < table_.rows.size(); ++i) {
+      const auto [at, is_first] = last.try_emplace(name_in(i, sensor), i);
+      const std::size_t before = std::exchange(at->second, i);
+      n_turns += cell(i, now) != cell(before, now) ? 1 : 0;
+      n_odd += !is_first && cell(i, old) != cell(before, now) ? 1 : 0;
+    }
+    return n_turns >= 2 && 10 * n_odd <= n_turns;
+  }
+  [[nodiscard]] bool has_word(std::size_t column, std::span<const std::string_view> words) const {
+    return std::ranges::any_of(words_of_name(table_.names[column]),
+                               [&](const std::string& word) { return std::ranges::find(words, word) != words.end(); });
+  }
+  /// 1: "old_state", -1: "new"; 0: neither.
+  [[nodiscard]] int age(std::size_t column) const {
+    constexpr std::array<std::string_view, 8> old{"old", "from", "before", "previous", "prev", "last", "alt", "von"};
+    constexpr std::array<std::string_view, 8> now{"new", "to", "after", "current", "now", "next", "neu", "nach"};
+    return (has_word(column, old) ? 1 : 0) - (has_word(column, now) ? 1 : 0);
+  }
+  /// Of an old and a new state in each row the new one. Where each row is a change, names alone tell them apart.
+  void take_new_state(SensorAndState& pair) const {
+    for (std::size_t i = 0; i < table_.n_columns(); ++i) {
+      if (known_states(i).size() < 2 || !is_before(pair.sensor, *pair.state, i)) continue;
+      const int younger = is_before(pair.sensor, i, *pair.state) ? age(*pair.state) - age(i) : 1;
+      if (younger == 0 && says(*pair.state) == says(i))
+        refuse_pairs("two columns say the contrary of each other in each row, so that one is the state before",
+                     {pair, {pair.sensor, i}});
+      if (younger > 0) pair.state = i;
+    }
+  }
+
   /// Columns that may hold the states of sensors that `sensor` names: called so; or called motion, or presence; or any.
   [[nodiscard]] std::vector<std::size_t> states_beside(const std::vector<std::size_t>& sensor) const {
     std::array<std::vector<std::size_t>, 3> by_rank;
@@ -255,7 +297,9 @@ class Finder {
       if (says(i) == NameSays::nothing && looks_like_motion(i)) by_rank[2].push_back(i);
     }
     for (std::vector<std::size_t>& columns : by_rank) {
-      if (columns.empty()) continue;
+      const bool is_left = &columns == by_rank.data() && !by_rank[1].empty() &&  // "online" beside motion's 1
+                           std::ranges::none_of(columns, [&](std::size_t i) { return has_states(i); });
+      if (columns.empty() || is_left) continue;
       std::size_t most = 0;  // flags that never change are no states beside those that do
       for (const std::size_t i : columns) most = std::max(most, known_states(i).size());
       std::erase_if(columns, [&](std::size_t i) { return known_states(i).size() < most; });

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "files/disk/file.hpp"
+#include "logs/log_head.hpp"
 #include "model/core/text.hpp"
 #include "model/schema/clock.hpp"
 #include "pirsim/log.hpp"
@@ -114,11 +115,25 @@ LogZone::Found LogZone::utc_of(std::int64_t local_us) {
   return {first, second, found.result == date::local_info::ambiguous ? Kind::ambiguous : Kind::missing};
 }
 
+std::optional<double> unit_in(std::string_view name) {
+  constexpr std::array<std::string_view, 11> units{"us",  "micro", "ms", "milli", "s",  "sec",
+                                                   "min", "h",     "hr", "hour",  "day"};
+  constexpr std::array<double, units.size()> us{1.0, 1.0, 1e3, 1e3, 1e6, 1e6, 6e7, 3.6e9, 3.6e9, 3.6e9, 8.64e10};
+  for (const std::string& word : words_of_name(name)) {
+    for (std::size_t i = 0; i < units.size(); ++i) {
+      if (word == units[i] || (units[i].size() > 2 && word.starts_with(units[i]))) return us[i];
+    }
+    if (word == "of" || word == "since") break;  // "time of day"
+  }
+  return std::nullopt;
+}
+
 void set_unit(TimeColumns& columns, double typical, std::string_view name) {
-  const double size = std::abs(typical);
-  const bool is_in_ms = name.ends_with("_ms") || name.find("milli") != std::string_view::npos;
-  columns.zero = size < (is_in_ms ? 1e11 : 1e8) ? TimeColumns::Zero::own : TimeColumns::Zero::epoch;
-  columns.unit_us = columns.zero == TimeColumns::Zero::epoch ? *epoch_unit_us(typical) : is_in_ms ? 1e3 : 1e6;
+  const auto told = unit_in(columns.format);
+  const double unit_us = told ? *told : unit_in(name).value_or(1e6);
+  const bool is_own = std::abs(typical) < (unit_us < 1e3 ? 1e14 : unit_us < 1e6 ? 1e11 : 1e8);
+  columns.zero = is_own ? TimeColumns::Zero::own : TimeColumns::Zero::epoch;
+  columns.unit_us = is_own ? unit_us : *epoch_unit_us(typical);
 }
 
 /// In days since 1970; none: not days.

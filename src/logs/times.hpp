@@ -73,8 +73,10 @@ struct TimeColumns {
   }
 };
 
-/// What numbers of this size count, by the name of their column if they are small: seconds, milli-, micro- or
-/// nanoseconds, since 1970 or since something of the log's own.
+/// In microseconds, of "time_ms", "Time (h)", "minutes since start"; none if the name tells no unit of time.
+[[nodiscard]] std::optional<double> unit_in(std::string_view name);
+/// What numbers of this size count, since 1970 or since something of the log's own: small ones the unit that a map's
+/// time_format or the name of their column tells, or else seconds.
 void set_unit(TimeColumns& columns, double typical, std::string_view name);
 
 class LogTimer {

@@ -108,6 +108,17 @@ FORMS = {
     "CASAS aruba": events(lambda m, s, v: f"{m.text}.000012 {s} {v}", on="ON", off="OFF", name="M_{}"),
     "CASAS hh": events(lambda m, s, v: f"{m.text}.5\tM{['hall', 'desk'].index(s):03}\tKitchen\tKitchenArea\t{v}\tControl4-Motion",
            on="ON", off="OFF"),
+    "AppDaemon": events(lambda m, s, v: f"{m.text}.000001 INFO motionlog: binary_sensor.{s}_motion: "
+                        f"{'off' if v == 'on' else 'on'} -> {v}"),
+    "old and new": events(lambda m, s, v: f"{m.text},{s},{1 - int(v)},{v}", ["time,sensor,from,to"], on="1", off="0"),
+    "a line a property": events(lambda m, s, v: f"{m.text},{s},motion,{v}" + f"\n{m.text},{s},light,{m.second // 60 % 2}" *
+                                (m.second % 3 == 0), ["date,device,type,state"], on="1", off="0"),
+    "Home Assistant, all domains": events(lambda m, s, v: f"{s},{v},{m.z}" + "".join(
+        f"\n{x},{('off', 'on')[m.second // 7 % 2]},{m.z}" for x in ("light.motion_night_light", "binary_sensor.hall_motion_tamper")),
+           ["entity_id,state,last_changed"], name="binary_sensor.{}_motion"),
+    "vacant": readings(lambda m, b: f"{m.text},{b[0]},{b[1]}", ["time,hall_vacant,desk_vacant"], on="0", off="1"),
+    "hours": readings(lambda m, b: f"{m.second / 3600:.6f},{b[0]},{b[1]}", ["Time (h),pir_hall,pir_desk"]),
+    "Arduino's milliseconds": readings(lambda m, b: f"{m.second}000,{b[0]},{b[1]}", ["time,pir_hall,pir_desk"]),
     "MySQL's batch": events(lambda m, s, v: f"{m.second}\t{m.text}\t{s}\t{v}", ["id\tts\tsensor\tstate"], on="1", off="0"),
     "Z-Wave": events(lambda m, s, v: f"{m.text},{s},{v}", ["time,name,value"], on="255", off="0"),
     "Tuya": events(lambda m, s, v: f"{m.text},{s},{v}", ["time,device,event"], on="pir", off="none"),
@@ -139,7 +150,9 @@ TROUBLES = ("plain", "crlf", "utf16", "gz", "doubled", "newest first", "cut", "t
             "two files", "overlap")
 # (form, trouble): words of the refusal; everything else is right, or its refusal's map makes it right.
 REFUSED = {("ioBroker", "cut"): "a quote that isn't closed", ("Hubitat", "cut"): "a quote that isn't closed",
-           ("R's write.table", "cut"): "a quote that isn't closed", ("Node-RED", "cut"): "JSON that ends within a value",
+           ("R's write.table", "cut"): "a quote that isn't closed",
+           ("AppDaemon", "title"): "expected 2 fields, got 8",
+           ("Home Assistant, all domains", "cut"): "another kind of time",
            ("Node-RED", "title"): "may be a time", ("Node-RED", "comments"): "may be a time",
            ("R's write.table", "title"): "may be a time", ("CASAS aruba", "title"): "expected 2 fields, got 4",
            ("ESPHome", "newest first"): "turn the lines round", ("ESPHome", "two files"): "join them in one",

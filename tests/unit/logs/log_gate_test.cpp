@@ -324,3 +324,117 @@ TEST_CASE("gate: what is called motion and can't be read is named, and nothing e
   CHECK_THAT(remarks_of(read_log_text(rows("time,room_motion,hall_motion", "ready"))),
              contains("'room_motion' is called a motion sensor"));
 }
+
+namespace {
+
+/// Of two sensors that begin at 0, another one every 100 s: a line for each change.
+std::string changes(const std::string& header, const std::function<std::string(const std::string&, bool)>& line,
+                    const std::function<std::string(int)>& time = at) {
+  std::string text = header.empty() ? std::string() : header + '\n';
+  for (int i = 0; i < 80; ++i) {
+    const bool is_on = i / 2 % 2 == 1;
+    text += line(time(100 * i + (is_on ? 30 : 0)), is_on);
+    text.replace(text.rfind('@'), 1, i % 2 == 0 ? "hall" : "desk");
+    text += '\n';
+  }
+  return text;
+}
+/// Both are on from 230 to 400 s, and so on.
+bool is_right(const Log& log) {
+  return log.sensors.size() == 2 && std::abs(share(log, 0) - 0.42) < 0.02 && std::abs(share(log, 1) - 0.43) < 0.02;
+}
+
+}  // namespace
+
+TEST_CASE("gate: of an old and a new state in each row the new one is read, or asked for") {
+  const auto word = [](bool is_on) { return std::string(is_on ? "on" : "off"); };
+  for (const char* header : {"time,sensor,from,to", "time,sensor,old,new", "time,sensor,previous,current",
+                             "time,sensor,before,after", "time,sensor,from_state,to_state", "time,sensor,alt,neu"}) {
+    CAPTURE(header);
+    CHECK(is_right(read_log_text(
+        changes(header, [&](const std::string& time, bool on) { return time + ",@," + word(!on) + ',' + word(on); }))));
+  }
+  CHECK(is_right(read_log_text(changes("time,sensor,state,old", [&](const std::string& time, bool on) {
+    return time + ",@," + word(on) + ',' + word(!on);
+  }))));
+  const std::string sentences = changes(
+      "", [&](const std::string& time, bool on) { return time + " @ changed from " + word(!on) + " to " + word(on); });
+  CHECK_THAT(refusal(sentences),
+             contains("each row") && contains(R"(state: "column 5")") && contains(R"(state: "column 7")"));
+  CHECK(is_right(read_log_text(
+      sentences, io::parse_log_map(R"({pirsim_log: 1, form: events, sensor: "column 2", state: "column 7"})", "map"))));
+  // Without names: a state that is told again tells which is the old one.
+  std::string beat;
+  std::array<bool, 2> last{};
+  for (int i = 0; i < 120; ++i) {
+    const auto sensor = static_cast<std::size_t>(i % 2);
+    const bool is_on = i / 6 % 2 == 1;
+    beat += at(7 * i * i) + (sensor == 0 ? ",hall," : ",desk,") + word(last[sensor]) + ',' + word(is_on) + '\n';
+    last[sensor] = is_on;
+  }
+  const Log log = read_log_text(beat);
+  REQUIRE(log.sensors.size() == 2);
+  CHECK(log.sensors[0].changes.back().us - log.begin_us == 92'575'000'000);  // of row 115, not of 117
+}
+
+TEST_CASE("gate: a column that tells motion from other things belongs to the name") {
+  std::mt19937 random(5);
+  std::string rows = "time,device,type,state\n", kinds = "time,device,class,state\n",
+              words = "time,device,text,state\n";
+  for (int i = 0; i < 200; ++i) {
+    const std::string bit = std::to_string(i / 2 % 2), name = i % 2 == 0 ? ",hall," : ",desk,";
+    rows += at(100 * i) + name + "motion," + bit + '\n';
+    if (i % 3 == 0) rows += at(100 * i + 20) + name + "light," + std::to_string(random() % 2) + '\n';
+    kinds += at(100 * i) + (i % 2 == 0 ? ",N1,motion," : ",N2,contact,") + bit + '\n';
+    words += at(100 * i) + name + (i / 2 % 2 == 0 ? "quiet," : "motion,") + bit + '\n';
+  }
+  const Log log = settled_by_map(rows, "'type' tells motion from other things, and isn't read");
+  CHECK(sensors_of(log) == Texts{"desk_motion", "hall_motion"});
+  CHECK(share(log, 0) == Approx(0.5).margin(0.02));
+  CHECK(sensors_of(settled_by_map(kinds, "'class' tells motion from other things")) == Texts{"N1_motion"});
+  CHECK(sensors_of(read_log_text(words)) == Texts{"desk", "hall"});  // the text says the state again
+}
+
+TEST_CASE("gate: of a home's entities binary sensors are sensors, but not those that tell of the sensor itself") {
+  std::string text = "entity_id,state,last_changed\n";
+  for (int i = 0; i < 60; ++i) {
+    for (const char* entity :
+         {"binary_sensor.hall_motion", "light.motion_night_light", "automation.motion_lights", "input_boolean.motion",
+          "binary_sensor.hall_motion_tamper", "binary_sensor.hall_motion_low_battery", "binary_sensor.motion_led",
+          "binary_sensor.hall_motion_connectivity", "binary_sensor.hall_occupancy_problem", "sensor.desk_motion"})
+      text += std::string(entity) + (i % 2 == 0 ? ",off," : ",on,") + at(100 * i) + '\n';
+  }
+  const Log log = read_log_text(text);
+  CHECK(sensors_of(log) == Texts{"binary_sensor.hall_motion", "sensor.desk_motion"});
+  CHECK(log.remarks.empty());
+}
+
+TEST_CASE("gate: what is called vacant, or idle, is turned round by a map alone") {
+  for (const char* name : {"hall_vacant", "no_motion_hall", "hall unoccupied", "frei Flur", "idle", "HallClear"}) {
+    for (const bool is_word : {false, true}) {
+      const auto cells = [&](int i) {
+        return std::string(i % 4 == 0 ? (is_word ? "false" : "0") : (is_word ? "true" : "1"));
+      };
+      const std::string rows = stepped(200, 30, cells, std::string("time,") + name);
+      CHECK(share(settled_by_map(rows, "the contrary of motion"), 0) == Approx(0.25));
+      LogMap as_it_is;
+      as_it_is.states = {{"1", "true"}, {"0", "false"}, {}};
+      CHECK(share(read_log_text(rows, as_it_is), 0) == Approx(0.75));
+    }
+  }
+  const auto both = [](int i) { return std::string(i % 4 == 0 ? "0,1" : i % 4 == 1 ? "0,0" : "1,0"); };
+  CHECK(sensors_of(settled_by_map(stepped(200, 30, both, "time,desk_vacant,hall"), "'desk_vacant'")) == Texts{"hall"});
+  CHECK(is_right(settled_by_map(
+      changes("time,room,vacant", [](const std::string& time, bool on) { return time + ",@," + (on ? "no" : "yes"); }),
+      "the contrary of motion")));
+}
+
+TEST_CASE("gate: a state that isn't a device's, and seconds since motion, are no motion") {
+  const std::string online = changes("time,device,status,motion", [](const std::string& time, bool on) {
+    return time + ",@," + (time.ends_with("00") ? "online" : "offline") + (on ? ",1" : ",0");
+  });
+  CHECK(is_right(read_log_text(online)));
+  const auto since = [](int i) { return std::to_string(i % 9); };
+  CHECK_THAT(refusal(stepped(200, 60, since, "time,minutes_since_motion")),
+             contains("no column is a motion sensor's") && !contains("above"));
+}

@@ -105,6 +105,42 @@ TEST_CASE("times as programs write them") {
   }
 }
 
+TEST_CASE("numbers of time in the unit that their column's name tells, or that is asked for") {
+  const auto rows = [](const std::string& name, double step) {
+    std::string text = name + ",hall_motion,desk_motion\n";
+    for (int i = 1; i <= 60; ++i)
+      text += std::to_string(step * i) + (i % 7 < 3 ? ",1" : ",0") + (i % 5 < 2 ? ",1\n" : ",0\n");
+    return text;
+  };
+  for (const auto& [name, step] : std::vector<std::pair<std::string, double>>{{"hours", 0.01},
+                                                                              {"Time (h)", 0.01},
+                                                                              {"time_min", 0.6},
+                                                                              {"Time (min)", 0.6},
+                                                                              {"time [min]", 0.6},
+                                                                              {"minutes since start", 0.6},
+                                                                              {"Time (ms)", 36'000},
+                                                                              {"time_ms", 36'000},
+                                                                              {"millis", 36'000},
+                                                                              {"micros", 36e6},
+                                                                              {"day", 0.01 / 24},
+                                                                              {"seconds of day", 36},
+                                                                              {"time", 36}}) {
+    CAPTURE(name);
+    LogMap map;
+    map.time = {name};
+    map.time_format = name == "day" ? "days" : "";
+    CHECK(static_cast<double>(read_log_text(rows(name, step), map).interval_us) == Approx(36e6).epsilon(0.01));
+  }
+  CHECK_THROWS_WITH(read_log_text(rows("time", 1000)), contains("'time' counts whole thousands") &&
+                                                           contains("{pirsim_log: 1, time_format: milliseconds}"));
+  LogMap map;
+  map.time_format = "milliseconds";
+  CHECK(read_log_text(rows("time", 1000), map).interval_us == 1'000'000);
+  map.time_format = "seconds";
+  CHECK(read_log_text(rows("time", 1000), map).interval_us == 1'000'000'000);
+  CHECK(read_log_text(rows("time_s", 1000)).interval_us == 1'000'000'000);
+}
+
 TEST_CASE("the name of a zone is one with a map's time_zone alone") {
   const auto rows = [](const std::string& zone) {
     return lines_of("time,sensor,state\n",
@@ -200,6 +236,15 @@ TEST_CASE("JSON that is no table is refused, however deep, long or cut off") {
   CHECK_THROWS_WITH(read_log_text(std::string(100'000, '[')), contains("JSON of more than 64 levels is no table"));
   CHECK_THROWS_WITH(read_log_text(std::string(100'000, '{')), contains("expected a table, or JSON"));
   CHECK_THROWS_WITH(read_log_text("[{\"time\": 1, \"A\": 0},\n"), contains("JSON that ends within a value"));
+  std::string lines;
+  for (int i = 0; i < 30; ++i)
+    lines += "{\"time\": " + std::to_string(30 * i) + ", \"A\": " + std::to_string(i / 2 % 2) + "}\n";
+  for (const std::size_t cut : {3U, 5U, 9U, 14U}) {
+    const Log log = read_log_text(lines.substr(0, lines.size() - cut));
+    CHECK(log.n_rows == 29);
+    REQUIRE(log.remarks.size() == 1);
+    CHECK_THAT(log.remarks.front().message, contains("the last line ends within a value: it is left out"));
+  }
   CHECK_THROWS_WITH(read_log_text("[[1, 2], [3]]\n"), contains("JSON without a list of objects"));
   CHECK_THROWS_WITH(read_log_text(R"({"status": "success", "data": {"resultType": "matrix", "result": []}})"),
                     contains("Prometheus' answer"));

@@ -211,7 +211,7 @@ TEST_CASE("what is called occupancy or presence is a sensor, unless a map says t
 }
 
 TEST_CASE("one column that is always the other's opposite is no second sensor") {
-  std::string text = "time,moving,clear\n";
+  std::string text = "time,moving,resting\n";
   for (int i = 1; i < 40; ++i) text += std::to_string(10 * i) + (i / 3 % 2 == 0 ? ",0,1\n" : ",1,0\n");
   CHECK(sensors_of(settled(text)[0]) == Texts{"moving"});
 }

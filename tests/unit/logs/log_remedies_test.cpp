@@ -76,6 +76,13 @@ std::vector<Provocation> provocations() {
             [](int i) { return epoch(30 * i) + (i % 2 == 0 ? "," : ",1") + (i % 7 == 0 ? ",1" : ",0"); })},
       {rows("time,A", 20, [](int i) { return epoch(30 * i) + ',' + bit(i); })},
       {rows("time,sensor", 20, [](int i) { return epoch(at(i)) + ",hall"; })},
+      {rows("hours,hall", 20, [](int i) { return std::to_string(0.01 * i) + ',' + bit(i / 3); })},
+      {rows("time,hall", 20, [](int i) { return std::to_string(1000 * i) + ',' + bit(i / 3); })},
+      {rows("when,who,one,other", 20,
+            [&](int i) { return epoch(at(i)) + ',' + two(i) + (i / 2 % 2 == 0 ? ",0,1" : ",1,0"); })},
+      {rows("time,device,type,state", 40,
+            [&](int i) { return epoch(at(i)) + ',' + two(i) + (i % 5 < 3 ? ",motion," : ",tamper,") + bit(i / 2); })},
+      {rows("time,hall_vacant", 40, [](int i) { return epoch(10 * i) + ',' + bit(i / 3); })},
   };
 }
 

@@ -189,6 +189,16 @@ TEST_CASE("intervals: on from begin to end, off at all other times, overlapping 
   CHECK_THAT(overlapping.remarks.front().message, contains("; 1 more like this"));
 }
 
+TEST_CASE("intervals whose begin and end are told in German") {
+  for (const char* header : {"Beginn;Ende;Melder", "Start;Ende;Melder", "von;bis;Melder"}) {
+    const Log log = read_log_text(std::string(header) +
+                                  "\n02.03.2026 07:00:00;02.03.2026 07:01:00;Flur\n02.03.2026 07:05:00;02.03.2026 "
+                                  "07:06:30;Flur\n02.03.2026 07:20:00;02.03.2026 07:30:00;Flur\n");
+    CHECK(log.map.form == LogMap::Form::intervals);
+    CHECK(facts_of(log).sensors.front().motion_s == Approx(750.0));
+  }
+}
+
 TEST_CASE("intervals that can't be: faults name their line, and a map says what isn't known") {
   CHECK_THAT(fault_of("start,end,sensor\n2026-03-02 07:00:05,2026-03-02 07:00:40,A\n2026-03-02 07:01:00,2026-03-02 "
                       "07:00:59,A\n"),
