@@ -36,6 +36,7 @@ enum class Purpose : std::uint32_t {
   occupancy_conduct = 25,   ///< what somebody does at a seat that a count gave them, and by which doors they go
   home_day = 26,            ///< when a resident gets up, what they do and how long
   home_meals = 27,          ///< when a household eats, who cooks, when a visitor comes
+  day_liveliness = 29,      ///< how lively everybody is in a run
   door_habit = 28,          ///< after which passes a door is shut at once
   pet = 34,                 ///< when a pet roams, where to and where it rests
   schedule_warmth = 31,     ///< clothes, sleeves, hair and skin of the people of a schedule
@@ -59,7 +60,8 @@ enum class Purpose : std::uint32_t {
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read
-  sensor_unit = 302,     ///< how sensitive one sensor is among those of its make; the same in all runs
+  sensor_unit = 302,     ///< how sensitive one sensor is among those of its room; the same in all runs
+  installation = 303,    ///< how sensitive all sensors of a room are; the same in all runs
   // Of datasets, from 400 on.
   room = 400,            ///< size, furniture and sensors of a parametric room; entity: which try
   room_people = 401,     ///< how many people a room has, and of which role

@@ -372,8 +372,8 @@ bool Actor::is_at_meeting() const {
   return stage == Stage::seated || stage == Stage::standing;
 }
 
-void Actor::attend(Talk talk, const std::optional<Vec2>& speaker) {
-  attention_ = {talk, 0.0};
+void Actor::attend(Talk talk, const std::optional<Vec2>& speaker, std::size_t n_others) {
+  attention_ = {talk, 0.0, n_others};
   if (!speaker || talk != Talk::listens) return;
   const Vec2 way = *speaker - body_->motion().position();
   attention_.towards = std::remainder(heading_of(way) - body_->motion().heading(), 2.0 * pi);
@@ -642,7 +642,10 @@ void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
     for (const std::uint32_t i : together_) {
       std::optional<Vec2> place;
       if (speaker) place = actors_[*speaker].motion().position();
-      actors_[i].attend(i == speaker ? Talk::speaks : speaker ? Talk::listens : Talk::none, place);
+      actors_[i].attend(i == speaker ? Talk::speaks
+                        : speaker    ? Talk::listens
+                                     : Talk::none,
+                        place, together_.size() - 1);
     }
   }
 }

@@ -57,7 +57,7 @@ class Actor {
   /// Sits or stands in a meeting, in natural style.
   [[nodiscard]] bool takes_part_in_meeting() const { return natural_ && body_ && is_at_meeting(); }
   /// From now on; speaker: where who speaks is.
-  void attend(Talk talk, const std::optional<Vec2>& speaker);
+  void attend(Talk talk, const std::optional<Vec2>& speaker, std::size_t n_others);
   /// What happened in the step to this tick.
   [[nodiscard]] std::span<const Incident> incidents() const noexcept { return incidents_; }
 

@@ -15,36 +15,44 @@ using body::Channel;
 using Side = Stroke::Side;
 using enum Act::After;
 
-// The standard deviation of the logarithm. Looks at a television or a computer are log-normal with 1.7 to 1.8, and who
-// ends one moves; trunk, hands and head that moved at their published rates independently of each other would leave
-// stillness with 1.2. Between the two: assumed (1.2-1.6).
-constexpr double spread = 1.4;
+// The standard deviation of the logarithm. Fitted to silences of two counted offices; trunk, hands and head that moved
+// at their published rates independently of each other would leave stillness with 1.2. Range tried: 1.0-1.4.
+constexpr double spread = 1.0;
+// Probability that an act follows at once on another one. Fitted to the same rooms (0.4-0.8 tried).
+constexpr double in_bouts = 0.6;
+// In 16 hours of one to three people at desks no silence reached 8 minutes: nobody awake is still for longer than this.
+constexpr double longest_awake_s = 300.0;  // assumed (200-400)
 
-// At a desk habits and tasks together come as often as trunk, hands and head move in all: assumed (5-12).
-constexpr StillPeriods at_work{8.0};
-// Who is absorbed moves less [Witchel2016]: assumed (8-16). Before a television more would leave no room for what was
+constexpr StillPeriods awake(double mean_s) { return {mean_s, in_bouts, longest_awake_s}; }
+
+// Fitted to the seconds with motion and the silences of two counted offices (5-12 tried).
+constexpr StillPeriods at_work = awake(7.5);
+// Fitted to two counted meeting rooms (2-8 tried).
+constexpr StillPeriods in_meeting = awake(3.0);
+// Who is absorbed moves less [Witchel2016]: assumed (12-24). Before a television more would leave no room for what was
 // counted.
-constexpr StillPeriods while_absorbed{12.0};
-constexpr StillPeriods while_speaking{0.8};     // assumed (0.4-1.5): hands rest between two gestures
-constexpr StillPeriods while_walking{6.0};      // assumed (3-12): looks ahead in between
-constexpr StillPeriods while_eating{5.0};       // assumed (3-8): chews
-constexpr StillPeriods at_stove_or_basin{2.0};  // assumed (1-4): the hands are at work
+constexpr StillPeriods while_absorbed = awake(18.0);
+constexpr StillPeriods while_speaking = awake(1.2);     // assumed (0.6-2.2): hands rest between two gestures
+constexpr StillPeriods while_walking = awake(9.0);      // assumed (4-18): looks ahead in between
+constexpr StillPeriods while_eating = awake(7.5);       // assumed (4-12): chews
+constexpr StillPeriods at_stove_or_basin = awake(3.0);  // assumed (1.5-6): the hands are at work
 // Eleven movements an hour, of one act or several in a row. Ref: [Montini2024]
-constexpr StillPeriods while_asleep{320.0};
+constexpr StillPeriods while_asleep{320.0, 0.4};  // goes on: assumed (0.2-0.6)
 
 constexpr const char* assumed = "assumed";
 constexpr const char* reading_speed = "weight: a page of 300 words takes 75 s at 238 words a minute [Brysbaert2019]";
 
-// Shifts: the body comes to rest in another posture.
-constexpr Stroke lean[]{{Channel::trunk_tilt, radians(-10), radians(14)}};
-constexpr Stroke shift_on_chair[]{{Channel::trunk_lean, radians(2), radians(7), Side::either},
-                                  {Channel::trunk_tilt, radians(-6), radians(8)}};
+// Shifts: the body comes to rest in another posture. Amplitudes of sitters' trunk and hands: fitted to the seconds with
+// motion of two counted offices (trunk 1-2 times, hands 1-3 times what a first guess had).
+constexpr Stroke lean[]{{Channel::trunk_tilt, radians(-15), radians(21)}};
+constexpr Stroke shift_on_chair[]{{Channel::trunk_lean, radians(3), radians(10), Side::either},
+                                  {Channel::trunk_tilt, radians(-9), radians(12)}};
 constexpr Stroke turn_chair[]{{Channel::chair_turn, radians(4), radians(18), Side::either}};
 constexpr Act seated_shifts[]{{"lean", 1, lean, 1.4, 1, 1, stays, assumed},
                               {"shift on the chair", 1, shift_on_chair, 1.0, 1, 1, stays, assumed},
                               {"turn the chair", 1, turn_chair, 1.5, 1, 1, stays, assumed}};
 
-constexpr Stroke sway[]{{Channel::trunk_tilt, radians(1), radians(4), Side::either}};
+constexpr Stroke sway[]{{Channel::trunk_tilt, radians(1.5), radians(6), Side::either}};
 constexpr Act fidgets[]{{"sway", 1, sway, 0.6, 1, 3, returns, assumed}};
 
 // A hand lies at the face for some seconds. Ref: [Zhang2020]: 9 % of the time, 66 % of the touches by the other hand
@@ -59,11 +67,11 @@ constexpr Act touches_with_free_hand[]{{"touch the face", 1, right_to_face, 1.0,
 constexpr Stroke look[]{{Channel::head_turn, radians(15), radians(50), Side::either}};
 constexpr Act looks[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed}};
 
-constexpr Stroke type[]{{Channel::left_hand_ahead, -0.025, 0.025}, {Channel::right_hand_ahead, -0.025, 0.025}};
-constexpr Stroke mouse[]{{Channel::right_hand_ahead, -0.05, 0.05}};
+constexpr Stroke type[]{{Channel::left_hand_ahead, -0.05, 0.05}, {Channel::right_hand_ahead, -0.05, 0.05}};
+constexpr Stroke mouse[]{{Channel::right_hand_ahead, -0.12, 0.08}};
 constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.03, 0.08}, {Channel::trunk_tilt, radians(6), radians(14)}};
-constexpr Act typing[]{{"type", 2, type, 0.3, 3, 14, returns, assumed},
-                       {"use the mouse", 1, mouse, 0.5, 2, 6, returns, assumed},
+constexpr Act typing[]{{"type", 10, type, 0.35, 3, 14, returns, assumed},
+                       {"use the mouse", 5, mouse, 0.7, 2, 6, returns, assumed},
                        {"reach for something", 1, reach, 1.0, 1, 1, returns, assumed}};
 
 constexpr Stroke turn_page[]{{Channel::right_hand_up, 0.03, 0.07}, {Channel::right_hand_ahead, -0.10, 0.04}};
@@ -75,12 +83,17 @@ constexpr Stroke gesture[]{{Channel::left_hand_up, 0.04, 0.18},
                            {Channel::right_hand_up, 0.04, 0.18},
                            {Channel::left_hand_ahead, -0.08, 0.08},
                            {Channel::right_hand_ahead, -0.08, 0.08}};
+constexpr Stroke lean_to[]{{Channel::trunk_tilt, radians(-8), radians(12)},
+                           {Channel::trunk_lean, radians(1), radians(6), Side::either}};
 constexpr Stroke nod[]{{Channel::trunk_tilt, radians(0.5), radians(2)}};
-constexpr Stroke take_notes[]{{Channel::right_hand_ahead, -0.03, 0.03}};
+constexpr Stroke take_notes[]{{Channel::right_hand_ahead, -0.05, 0.05}};
 constexpr Act listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
-                          {"take notes", 1, take_notes, 0.3, 2, 12, returns, assumed},
-                          {"glance", 1, glance, 0.6, 1, 1, returns, assumed}};
-constexpr Act speaking[]{{"gesture", 1, gesture, 0.7, 2, 6, returns, assumed}};
+                          {"take notes", 1, take_notes, 0.35, 2, 12, returns, assumed},
+                          {"glance", 1, glance, 0.6, 1, 1, returns, assumed},
+                          {"lean to somebody", 1, lean_to, 0.9, 1, 1, returns, assumed},
+                          {"turn to somebody", 1, turn_chair, 1.0, 1, 1, returns, assumed}};
+constexpr Act speaking[]{{"gesture", 3, gesture, 0.7, 2, 6, returns, assumed},
+                         {"lean to somebody", 1, lean_to, 0.9, 1, 1, returns, assumed}};
 
 constexpr Stroke one_hand[]{{Channel::right_hand_up, 0.03, 0.15}, {Channel::right_hand_ahead, -0.06, 0.06}};
 constexpr Act phoning[]{{"gesture with one hand", 1, one_hand, 0.7, 1, 4, returns, assumed},
@@ -88,7 +101,7 @@ constexpr Act phoning[]{{"gesture with one hand", 1, one_hand, 0.7, 1, 4, return
 constexpr Hold at_the_ear[]{{Channel::left_hand_to_head, 1.0}};
 
 constexpr Act sitting_idly[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed},
-                             {"sway", 1, sway, 0.6, 1, 3, returns, assumed}};
+                             {"move a hand", 1, one_hand, 0.7, 1, 2, returns, assumed}};
 
 // On the feet. Hands that hang are raised part of the way to the head.
 constexpr Stroke shift_weight[]{{Channel::trunk_lean, radians(1), radians(3), Side::either}};
@@ -182,7 +195,7 @@ using ByActivity = std::array<Repertoire, activity_names.size()>;
 constexpr Repertoire seated_idly{at_desk, sitting_idly, {}, at_work};
 constexpr ByActivity seated{{{at_desk, typing, {}, at_work},
                              {at_desk, reading, {}, while_absorbed},
-                             {at_desk, listening, {}, at_work},
+                             {at_desk, listening, {}, in_meeting},
                              {on_phone, phoning, at_the_ear, at_work},
                              seated_idly,
                              {asleep_in_chair, dozing, {}, while_asleep},
@@ -194,7 +207,7 @@ constexpr Repertoire seated_speaker{at_desk, speaking, {}, while_speaking};
 constexpr Repertoire standing_idly{on_feet, looks, {}, at_work};
 constexpr ByActivity standing{{standing_idly,
                                standing_idly,
-                               {on_feet, standing_listening, {}, at_work},
+                               {on_feet, standing_listening, {}, in_meeting},
                                {on_feet_on_phone, standing_phoning, at_the_ear, at_work},
                                {on_feet, at_whiteboard, {}, while_speaking},
                                standing_idly,
@@ -212,9 +225,11 @@ constexpr Repertoire lying_asleep{asleep_in_bed, asleep, {}, while_asleep};
 using body::Channel;
 using body::Stage;
 
-constexpr double goes_on = 0.4;        // assumed (0.2-0.6): another act follows at once
 constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of a person's rate
-constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open
+constexpr double day_sd =
+    0.35;  // fitted to three days of a room (0.2-0.5): of the logarithm of everybody's rate on a day
+constexpr double per_other = 0.25;   // fitted to two meeting rooms: how much more a listener moves for each further one
+constexpr double pace_sd_m_s = 0.2;  // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
 // How far the chest comes forward while head and limbs lie still: of sitters, Ref: [DeGroote1997]: 3 to 5 mm; lying,
 // where the belly moves more [KanekoHorie2012], assumed (3-10).
@@ -283,11 +298,30 @@ constexpr double bout_s = 20.0;  // assumed (10-60): swinging and stillness take
 
 }  // namespace
 
-double StillPeriods::length_s(double z) const noexcept { return mean_s * std::exp(spread * (z - 0.5 * spread)); }
+namespace {
+
+/// One that isn't longer than the longest, of the law whose logarithm is moved by so much.
+double cut_length_s(const StillPeriods& still, Stream& stream, double moved) noexcept {
+  double length_s = 0.0;
+  do {
+    length_s = still.mean_s * std::exp(spread * (stream.normal() + moved));
+  } while (length_s > still.longest_s);
+  return length_s;
+}
+
+}  // namespace
+
+double StillPeriods::length_s(Stream& stream) const noexcept { return cut_length_s(*this, stream, -0.5 * spread); }
 
 /// A period is met in proportion to its length, anywhere in it.
-double StillPeriods::rest_s(double z, double v) const noexcept {
-  return v * mean_s * std::exp(spread * (z + 0.5 * spread));
+double StillPeriods::rest_s(Stream& stream) const noexcept {
+  return stream.uniform() * cut_length_s(*this, stream, 0.5 * spread);
+}
+
+double StillPeriods::cut_mean_s() const noexcept {
+  const auto below = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  const double longest_z = std::log(longest_s / mean_s) / spread;
+  return mean_s * below(longest_z - 0.5 * spread) / below(longest_z + 0.5 * spread);
 }
 
 const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, Talk talk) noexcept {
@@ -309,8 +343,10 @@ const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, 
 
 NaturalMotion::NaturalMotion(std::uint64_t seed, std::uint32_t run, std::uint32_t person, int tick_rate_hz)
     : stream_({seed, run, person, Purpose::natural_motion}), tick_rate_hz_(tick_rate_hz) {
-  // Of mean 1 over people.
-  liveliness_ = std::exp(liveliness_sd * stream_.normal() - 0.5 * liveliness_sd * liveliness_sd);
+  Stream day({seed, run, 0, Purpose::day_liveliness});
+  // Of mean 1 over people and days.
+  liveliness_ = std::exp(liveliness_sd * stream_.normal() - 0.5 * liveliness_sd * liveliness_sd +
+                         day_sd * day.normal() - 0.5 * day_sd * day_sd);
   breath_hz_ = slowest_breath_hz + (fastest_breath_hz - slowest_breath_hz) * stream_.uniform();
   breath_phase_ = stream_.uniform();
   Stream pace({seed, run, person, Purpose::pace});
@@ -328,7 +364,7 @@ void NaturalMotion::wait(double seconds) {
 void NaturalMotion::be_still() {
   act_ = nullptr;
   phase_ = Phase::still;
-  wait(repertoire().still.length_s(stream_.normal()) / liveliness_);
+  wait(still().length_s(stream_));
 }
 
 /// One is met in the middle of a still period, or at the end of an act, so that rates hold from the first moment on.
@@ -351,14 +387,15 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   act_ = nullptr;
   const Cycle now = cycle();
   phase_ = stream_.uniform() * now.mean_s < now.still_s ? Phase::still : Phase::returning;
-  const double z = stream_.normal(), v = stream_.uniform();
-  wait(phase_ == Phase::still ? std::max(settles_s, repertoire().still.rest_s(z, v) / liveliness_) : act_ends_s);
+  const double rest_s = still().rest_s(stream_);
+  wait(phase_ == Phase::still ? std::max(settles_s, rest_s) : act_ends_s);
 }
 
 /// Who begins to speak moves soon. Who listens looks there when they move next.
 void NaturalMotion::attend(const Attention& attention) {
   const bool begins = attention.talk == Talk::speaks && talk_ != Talk::speaks;
   talk_ = attention.talk;
+  company_ = talk_ == Talk::listens ? 1.0 + per_other * static_cast<double>(attention.n_others) : 1.0;
   if (begins && phase_ == Phase::still)
     next_ = std::min<std::int64_t>(next_, tick_ + std::llround(speaks_up_s * tick_rate_hz_));
   rest_of(Channel::head_turn) =
@@ -370,16 +407,16 @@ void NaturalMotion::attend(const Attention& attention) {
 /// liveliness; tasks fill what is left.
 NaturalMotion::Cycle NaturalMotion::cycle() const {
   const Repertoire& all = repertoire();
-  const double task_s = mean_s(all.tasks), still_s = (1.0 - goes_on) * all.still.mean_s / liveliness_;
+  const double task_s = mean_s(all.tasks), still_s = (1.0 - still().goes_on) * still().cut_mean_s();
   double cycles = 1.0;
-  for (const Habit& habit : all.habits) cycles -= habit.per_s * liveliness_ * (mean_s(habit.acts) - task_s);
+  for (const Habit& habit : all.habits) cycles -= habit.per_s * rate() * (mean_s(habit.acts) - task_s);
   return {(still_s + task_s) / cycles, still_s};
 }
 
 ActKind NaturalMotion::draw_kind() {
   double left = stream_.uniform() / cycle().mean_s;
   for (std::size_t i = 0; i < n_habits; ++i) {
-    if ((left -= repertoire().habits[i].per_s * liveliness_) < 0.0) return static_cast<ActKind>(i);
+    if ((left -= repertoire().habits[i].per_s * rate()) < 0.0) return static_cast<ActKind>(i);
   }
   return ActKind::task;
 }
@@ -462,7 +499,7 @@ void NaturalMotion::tick(body::Motion& motion, std::optional<Activity> activity,
     phase_ = Phase::returning;
     if (const double seconds = return_to_rest(motion); seconds > 0.0) return wait(seconds);
   }
-  if (phase_ == Phase::returning && stream_.uniform() >= goes_on) return be_still();
+  if (phase_ == Phase::returning && stream_.uniform() >= still().goes_on) return be_still();
   if (phase_ != Phase::moving) begin_act();
   stroke(motion);
 }
@@ -505,8 +542,7 @@ void Restlessness::fidget(body::Motion& motion) {
     const bool first = ticks_to_fidget_ < 0;
     // Nobody sits down just after a fidget: else the first of the long pauses would come too late.
     const StillPeriods between_fidgets{1.0 / fidgeting_.rate_per_s};
-    const double z = fidget_stream_.normal();
-    ticks_to_fidget_ = ticks(first ? between_fidgets.rest_s(z, fidget_stream_.uniform()) : between_fidgets.length_s(z));
+    ticks_to_fidget_ = ticks(first ? between_fidgets.rest_s(fidget_stream_) : between_fidgets.length_s(fidget_stream_));
     if (first) return;
   }
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -50,14 +51,18 @@ struct Hold {
   double value;
 };
 
-/// Still periods are log-normal.
+/// Still periods are log-normal up to the longest.
 struct StillPeriods {
-  double mean_s;
+  double mean_s;         ///< were there no longest
+  double goes_on = 0.0;  ///< probability that an act follows on another one without any: bouts
+  double longest_s = std::numeric_limits<double>::infinity();
 
-  /// z: standard normal.
-  [[nodiscard]] double length_s(double z) const noexcept;
-  /// What is left of the period that one meets at a random moment of stillness. v: uniform in [0, 1).
-  [[nodiscard]] double rest_s(double z, double v) const noexcept;
+  [[nodiscard]] double length_s(Stream& stream) const noexcept;
+  /// What is left of the period that one meets at a random moment of stillness.
+  [[nodiscard]] double rest_s(Stream& stream) const noexcept;
+  [[nodiscard]] double cut_mean_s() const noexcept;
+  /// Of somebody who moves so many times as often; the longest stays.
+  [[nodiscard]] StillPeriods at_rate(double rate) const noexcept { return {mean_s / rate, goes_on, longest_s}; }
 };
 
 /// Acts of a kind, and how often the mean person carries out one of them.
@@ -87,7 +92,8 @@ enum class Talk { none, listens, speaks };
 /// What a person has to do with who speaks.
 struct Attention {
   Talk talk = Talk::none;
-  double towards = 0.0;  ///< of a listener: the turn of the head that looks at who speaks, radians to the left
+  double towards = 0.0;      ///< of a listener: the turn of the head that looks at who speaks, radians to the left
+  std::size_t n_others = 0;  ///< in the conversation
 };
 
 /// A value; draws from a stream of its own.
@@ -133,6 +139,8 @@ class NaturalMotion {
   };
   [[nodiscard]] Cycle cycle() const;
   [[nodiscard]] ActKind draw_kind();
+  [[nodiscard]] double rate() const noexcept { return liveliness_ * company_; }
+  [[nodiscard]] StillPeriods still() const noexcept { return repertoire().still.at_rate(rate()); }
   [[nodiscard]] double& rest_of(body::Channel channel) { return rest_[static_cast<std::size_t>(channel)]; }
   [[nodiscard]] const Repertoire& repertoire() const noexcept {
     return sim::repertoire(situation_->bearing, situation_->activity, talk_);
@@ -140,8 +148,9 @@ class NaturalMotion {
 
   Stream stream_;
   int tick_rate_hz_ = 50;
-  double liveliness_ = 1.0;
-  double pace_ = 0.0;  ///< standard normal
+  double liveliness_ = 1.0;  ///< of the person, on this day
+  double company_ = 1.0;     ///< how much more those who listen move the more they are
+  double pace_ = 0.0;        ///< standard normal
   double breath_hz_ = 0.25;
   double breath_phase_ = 0.0;
   std::optional<Situation> situation_;  ///< none on the way onto or off a seat

@@ -112,7 +112,7 @@ TEST_CASE("natural sitters do what was counted at desks as often as it was, what
     // Who sees the joints alone counts the same shifts, but for those that follow upon one another without a rest.
     const double shifts = sum(office.counts[0]);
     INFO(name_of(activity) << ": seen " << office.seen_shifts << " of " << shifts << " shifts");
-    CHECK(office.seen_shifts <= shifts);
+    CHECK(office.seen_shifts <= 1.01 * shifts);  // of a meeting: who leans to somebody may shift meanwhile
     CHECK(office.seen_shifts > 0.85 * shifts);
   }
 }
@@ -192,21 +192,21 @@ TEST_CASE("still periods of natural sitters are log-normal, longer for readers",
   // Above all times for which a hand lies at the face.
   constexpr double low_s = 25.0;
   std::vector<double> working;
-  for (const Activity activity : {Activity::typing, Activity::meeting, Activity::phone}) {
+  for (const Activity activity : {Activity::typing, Activity::phone}) {
     const std::vector<double>& some = hours_of(activity).still_s;
     working.insert(working.end(), some.begin(), some.end());
   }
   const std::vector<double>& reading = hours_of(Activity::reading).still_s;
-  CHECK(distance_from_log_normal(working, low_s, 8.0, 1.4) < refused);
-  CHECK(distance_from_log_normal(reading, low_s, 12.0, 1.4) < refused);
+  CHECK(distance_from_log_normal(working, low_s, 7.5, 1.0) < refused);
+  CHECK(distance_from_log_normal(reading, low_s, 18.0, 1.0) < refused);
   // Twins: the ends of what was thought possible.
-  for (const double spread : {1.2, 1.6}) CHECK(distance_from_log_normal(working, low_s, 8.0, spread) > refused);
+  for (const double spread : {0.8, 1.4}) CHECK(distance_from_log_normal(reading, low_s, 18.0, spread) > refused);
   // And the power law that stillness at the wrist follows over days: exponent 0.9 between 1 and 600 s.
   Stream stream({1, 0, 0, Purpose::test});
   std::vector<double> by_power_law(20000);
   const double least = std::pow(600.0, -0.9);
   for (double& s : by_power_law) s = std::pow(1.0 - stream.uniform() * (1.0 - least), -1.0 / 0.9);
-  CHECK(distance_from_log_normal(by_power_law, low_s, 8.0, 1.4) > refused);
+  CHECK(distance_from_log_normal(by_power_law, low_s, 7.5, 1.0) > refused);
 }
 
 TEST_CASE("trunk, hands and head that move independently leave as few long stillnesses as the law's lower end") {
@@ -377,8 +377,13 @@ TEST_CASE("people of natural style differ in liveliness and pace as they should"
     pace += speed / n;
     pace_square += speed * speed / n;
   }
-  // Of a log-normal variable with mean 1 and 0.4 for its logarithm: exp(0.16) - 1 is its variance.
-  CHECK(std::abs(mean - 1.0) < 4.0 * std::sqrt(std::expm1(0.16) / n));
+  double mean_of_days = 0.0;
+  for (std::uint32_t day = 0; day < n; ++day)
+    mean_of_days += sim::NaturalMotion(5, day, 0, tick_rate_hz).liveliness() / n;
+  // Of a log-normal variable with mean 1 and so much for its logarithm, 0.4 over people and 0.35 over days: exp(sd^2) -
+  // 1 is its variance. All people of a day share what the day has.
+  CHECK(std::abs(mean_of_days - 1.0) < 4.0 * std::sqrt(std::expm1(0.16 + 0.1225) / n));
+  CHECK(std::abs(mean - 1.0) > 4.0 * std::sqrt(std::expm1(0.16) / n));  // must fail: of one day
   CHECK(std::abs(std::sqrt(log_square - log_mean * log_mean) - 0.4) < 4.0 * 0.4 / std::sqrt(2.0 * n));
   CHECK(std::abs(pace - 1.2) < 4.0 * 0.2 / std::sqrt(1.0 * n));
   const double pace_sd = std::sqrt(pace_square - pace * pace);
