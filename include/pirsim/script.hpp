@@ -37,11 +37,12 @@ enum class Reader {
   free_running  ///< each at a moment of its own, drawn once a run: as hardware that isn't in step with the rows
 };
 
-/// Which of a make's units each sensor is (SensitivitySpec).
+/// How sensitive each sensor is among those of its make (SensitivitySpec).
 enum class Units {
-  typical,     ///< the mean one
-  guaranteed,  ///< the least sensitive one that the maker sells: for who plans
-  drawn        ///< each sensor its own, the same in all runs
+  typical,     ///< the median
+  low,         ///< nine in ten are more sensitive: for who plans
+  guaranteed,  ///< as rated
+  drawn        ///< one installation, and each of its sensors its own, the same in all runs
 };
 
 struct SensingSpec {

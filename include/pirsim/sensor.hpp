@@ -107,11 +107,13 @@ struct RatedTargetSpec {
   int zones = 2;            ///< that it crosses, 1 or 2
 };
 
-/// How sensitive units of one make are, relative to the least that the maker guarantees (which the rated distances are
-/// taken to tell): log-normal over units.
+/// How sensitive sensors of one make are where they hang, relative to what the rated distances tell: log-normal. Mount,
+/// trimmer, age and what stands before it are the installation's, which all sensors of a room share; the rest is the
+/// unit's own.
 struct SensitivitySpec {
-  double mean = 1.0;
-  double sd = 0.0;  ///< of the logarithm
+  double median = 1.0;
+  double installation_sd = 0.0;  ///< of the logarithm, over rooms
+  double sd = 0.0;               ///< of the logarithm, over units of a room
 };
 
 /// A thermopile array: a field of pixels, each of which tells the temperature of a black body of the radiance that it

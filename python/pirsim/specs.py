@@ -253,12 +253,14 @@ class RatedTarget:
 
 @dataclass(slots=True)
 class Sensitivity:
-    """How sensitive units of this make are, relative to what the rated distances tell; log-normal."""
+    """How sensitive sensors of this make are where they hang, relative to what the rated distances tell; log-normal."""
 
-    mean: float = 1.0
-    """Over units."""
+    median: float = 1.0
+    """Over rooms and units."""
+    installation_sd: float = 0.0
+    """Standard deviation of the logarithm over rooms."""
     sd: float = 0.0
-    """Standard deviation of the logarithm over units."""
+    """Of the logarithm over the units of a room."""
 
 
 @dataclass(slots=True)
@@ -321,7 +323,7 @@ class SensorModel:
     targets: list[RatedTarget] = field(default_factory=list)
     """Of lens steps whose rated target isn't the usual one."""
     sensitivity: Sensitivity = field(default_factory=Sensitivity)
-    """Of units, relative to what is guaranteed."""
+    """Of sensors where they hang, relative to what is rated."""
     response: Literal["zones", "analog", "beam"] = "analog"
     """`zones`: a change of activity is motion; `analog`: the physical response; `beam`: a light barrier."""
     optics: Optics = field(default_factory=Optics)
@@ -828,8 +830,9 @@ class Sensing:
     """When in a window each sensor is asked."""
     response: Literal["zones", "analog", "beam"] | None = None
     """One of zones, analog; of all sensors but beams; none: each its own."""
-    units: Literal["typical", "guaranteed", "drawn"] = "typical"
-    """How sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or each `drawn`."""
+    units: Literal["typical", "low", "guaranteed", "drawn"] = "typical"
+    """How sensitive analog sensors are: `typical` of their make, `low`, which nine in ten exceed, as rated
+    (`guaranteed`), or `drawn`."""
     ambient_c: float = 23.0
     """Of surfaces and of the air, where the scene says nothing else."""
     analog_rays_per_zone: int = 34

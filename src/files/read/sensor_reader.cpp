@@ -354,9 +354,10 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   for (const std::string& name : sourced_keys()) {
     const std::string text = sources.prose(name, "assumed:");
     const std::string tag = text.substr(0, text.find(':'));
-    if (tag != "quoted" && tag != "measured" && tag != "inferred" && tag != "assumed") {
-      faults.error(sources.where(name),
-                   "sources: " + name + ": expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front");
+    if (tag != "quoted" && tag != "measured" && tag != "inferred" && tag != "fitted" && tag != "assumed") {
+      faults.error(
+          sources.where(name),
+          "sources: " + name + ": expected 'quoted:', 'measured:', 'inferred:', 'fitted:' or 'assumed:' in front");
     }
   }
   sources.finish();

@@ -304,10 +304,11 @@ struct Fields<SensitivitySpec> {
   using S = SensitivitySpec;
   static constexpr const char* name = "Sensitivity";
   static constexpr const char* about =
-      "How sensitive units of this make are, relative to what the rated distances tell; log-normal.";
+      "How sensitive sensors of this make are where they hang, relative to what the rated distances tell; log-normal.";
   static constexpr std::tuple all{
-      FIELD(mean, NumberRange{.above = 0.0, .max = 100.0}, "over units"),
-      FIELD(sd, NumberRange{.min = 0.0, .max = 2.0}, "standard deviation of the logarithm over units")};
+      FIELD(median, NumberRange{.above = 0.0, .max = 100.0}, "over rooms and units"),
+      FIELD(installation_sd, NumberRange{.min = 0.0, .max = 2.0}, "standard deviation of the logarithm over rooms"),
+      FIELD(sd, NumberRange{.min = 0.0, .max = 2.0}, "of the logarithm over the units of a room")};
 };
 template <>
 struct Fields<ArraySpec> {
@@ -347,7 +348,7 @@ struct Fields<SensorModelSpec> {
       // less leaves no digits to directions
       FIELD(plane_m, NumberRange{.min = 1e-3, .max = 1000.0}, "distance of the plane on which the zones are drawn"),
       FIELD(clusters), FIELD(targets, "of lens steps whose rated target isn't the usual one"),
-      FIELD(sensitivity, "of units, relative to what is guaranteed"),
+      FIELD(sensitivity, "of sensors where they hang, relative to what is rated"),
       FIELD(response,
             "`zones`: a change of activity is motion; `analog`: the physical response; `beam`: a light barrier"),
       FIELD(optics, "for the physical response"), FIELD(detector, "electronics, for the physical response"),
@@ -496,8 +497,8 @@ struct Fields<SensingSpec> {
       FIELD(reader, "when in a window each sensor is asked"),
       FIELD(response, std::array{Response::zones, Response::analog}, "of all sensors but beams; none: each its own"),
       FIELD(units,
-            "how sensitive analog sensors are: `typical` of their make, as the maker's `guaranteed` least, or "
-            "each `drawn`"),
+            "how sensitive analog sensors are: `typical` of their make, `low`, which nine in ten exceed, as rated "
+            "(`guaranteed`), or `drawn`"),
       FIELD(ambient_c, accepted::skin_c, "of surfaces and of the air, where the scene says nothing else"),
       FIELD(analog_rays_per_zone, IntegerRange{.min = 1, .max = 10000}, "in the physical response"),
       FIELD(frame_rate_hz, NumberRange{.above = 0.0, .max = 1000.0}, "of all arrays; none: each its own")};

@@ -20,10 +20,19 @@ Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const S
 
 double unit_sensitivity(const SceneSpec& scene, Units units, std::uint64_t seed, std::uint32_t sensor) {
   const SensitivitySpec& make = scene.sensor_models.at(scene.sensors[sensor].model).sensitivity;
-  if (units == Units::guaranteed) return 1.0;
-  if (units == Units::typical) return make.mean;
-  Stream stream({seed, 0, sensor, Purpose::sensor_unit});
-  return make.mean * std::exp(make.sd * stream.normal() - 0.5 * make.sd * make.sd);
+  constexpr double low_tenth = -1.2816;  // of a standard normal
+  switch (units) {
+    case Units::guaranteed:
+      return 1.0;
+    case Units::typical:
+      return make.median;
+    case Units::low:
+      return make.median * std::exp(low_tenth * std::hypot(make.installation_sd, make.sd));
+    case Units::drawn:
+      break;
+  }
+  Stream room({seed, 0, 0, Purpose::installation}), unit({seed, 0, sensor, Purpose::sensor_unit});
+  return make.median * std::exp(make.installation_sd * room.normal() + make.sd * unit.normal());
 }
 
 std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing) {

@@ -73,8 +73,8 @@ struct Words<ChangePer> {
 };
 template <>
 struct Words<Units> {
-  static constexpr WordList<Units, 3> all{
-      {{"typical", Units::typical}, {"guaranteed", Units::guaranteed}, {"drawn", Units::drawn}}};
+  static constexpr WordList<Units, 4> all{
+      {{"typical", Units::typical}, {"low", Units::low}, {"guaranteed", Units::guaranteed}, {"drawn", Units::drawn}}};
 };
 template <>
 struct Words<Reader> {

@@ -313,7 +313,8 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
                           "    zones: [corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]]\n")
             .find("f:2:1: error: 'plane_m' has no entry under 'sources'") == 0);
   CHECK(refusal_of_sensor("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
-            .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
+            .find("expected 'quoted:', 'measured:', 'inferred:', 'fitted:' or 'assumed:' in front") !=
+        std::string::npos);
 }
 
 TEST_CASE("keys of another kind of sensor are refused where they stand", "[sensor]") {
@@ -374,18 +375,18 @@ TEST_CASE("a file's rated targets and sensitivity are read, and refused for lens
   const std::string zones =
       "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n";
   const std::string sources =
-      "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', mean: 'quoted: d', "
+      "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', median: 'quoted: d', "
       "sd: 'assumed: e', zones: 'quoted: f', width_m: 'quoted: g', lens_step: 'quoted: h'}\n";
-  const std::string sensitivity = "sensitivity: {mean: 1.36, sd: 0.1}\n";
+  const std::string sensitivity = "sensitivity: {median: 1.36, sd: 0.1}\n";
   const auto model = model_of(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}]\n");
   REQUIRE(model.targets.size() == 1);
   CHECK(model.targets[0].lens_step == 1);
   CHECK(model.targets[0].zones == 1);
   CHECK(model.targets[0].width_m == 0.2);
   CHECK(model.targets[0].height_m == RatedTargetSpec{}.height_m);
-  CHECK(model.sensitivity.mean == 1.36);
+  CHECK(model.sensitivity.median == 1.36);
   CHECK(model.sensitivity.sd == 0.1);
-  CHECK(model_of(zones + sources).sensitivity.mean == 1.0);
+  CHECK(model_of(zones + sources).sensitivity.median == 1.0);
   CHECK(refusal_of_sensor(zones + sources + sensitivity + "targets: [{lens_step: 2, zones: 1, width_m: 0.2}]\n") ==
         "f:9:10: error: targets: no facet is of lens step 2");
   CHECK(refusal_of_sensor(zones + sources + sensitivity + "targets: [{zones: 1, width_m: 0.2}, {zones: 2}]\n") ==

@@ -20,38 +20,46 @@ SceneSpec scene_of(std::size_t n_sensors, const SensitivitySpec& make) {
 }
 
 constexpr std::uint64_t seed = 7;
-constexpr SensitivitySpec papirs{.mean = 1.36, .sd = 0.1};
+constexpr SensitivitySpec papirs{.median = 1.4, .installation_sd = 0.7, .sd = 0.1};
 
 }  // namespace
 
-TEST_CASE("a guaranteed unit is as rated, a typical one as the mean", "[units]") {
+TEST_CASE("a guaranteed unit is as rated, a typical one the median, a low one what nine in ten exceed", "[units]") {
   const SceneSpec scene = scene_of(2, papirs);
   CHECK(unit_sensitivity(scene, Units::guaranteed, seed, 1) == 1.0);
-  CHECK(unit_sensitivity(scene, Units::typical, seed, 1) == 1.36);
+  CHECK(unit_sensitivity(scene, Units::typical, seed, 1) == 1.4);
+  CHECK(unit_sensitivity(scene, Units::low, seed, 1) == Approx(0.565).epsilon(0.01));
   CHECK(unit_sensitivity(scene_of(1, {}), Units::drawn, seed, 0) == 1.0);  // a make that doesn't say
 }
 
-TEST_CASE("drawn units are log-normal about their make's mean", "[units]") {
-  constexpr std::size_t n = 40000;
-  const SceneSpec scene = scene_of(n, papirs);
-  std::vector<double> logs;
-  double sum = 0.0;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double unit = unit_sensitivity(scene, Units::drawn, seed, i);
-    sum += unit;
-    logs.push_back(std::log(unit));
+TEST_CASE("sensors of a room share its installation, and differ by their units", "[units]") {
+  constexpr std::size_t n_rooms = 20000;
+  const SceneSpec scene = scene_of(2, papirs);
+  std::vector<double> logs, apart;
+  for (std::uint64_t room = 0; room < n_rooms; ++room) {
+    const double one = unit_sensitivity(scene, Units::drawn, room, 0),
+                 other = unit_sensitivity(scene, Units::drawn, room, 1);
+    logs.push_back(std::log(one / papirs.median));
+    apart.push_back(std::log(one / other));
   }
-  const double mean = sum / n;
-  const double standard_error = 1.36 * papirs.sd / std::sqrt(static_cast<double>(n));  // 0.0007
-  CHECK(std::abs(mean - 1.36) < 4.0 * standard_error);
-  CHECK(std::abs(mean - 1.36 * std::exp(0.5 * papirs.sd * papirs.sd)) > 4.0 * standard_error);  // must fail: the median
+  const auto spread = [](std::vector<double> values) {
+    std::ranges::sort(values);
+    const auto quantile = [&](double p) {
+      return values[static_cast<std::size_t>(p * static_cast<double>(values.size()))];
+    };
+    return std::pair{quantile(0.5), 0.5 * (quantile(0.8413) - quantile(0.1587))};
+  };
+  const auto [middle, sd] = spread(logs);
+  const auto [no_shift, units_sd] = spread(apart);
+  constexpr double standard_error = 1.2533 * 0.707 / 141.4;  // of a median: 0.006
+  CHECK(std::abs(middle) < 4.0 * standard_error);
+  CHECK(std::abs(middle - 0.5 * 0.5) > 4.0 * standard_error);  // must fail: the mean
+  CHECK(sd == Approx(std::hypot(0.7, 0.1)).epsilon(0.03));
+  CHECK(std::abs(no_shift) < 0.005);
+  CHECK(units_sd == Approx(0.1 * std::sqrt(2.0)).epsilon(0.03));
   std::ranges::sort(logs);
-  const auto quantile = [&](double p) { return logs[static_cast<std::size_t>(p * n)]; };
-  CHECK(quantile(0.8413) - quantile(0.5) == Approx(papirs.sd).epsilon(0.03));
-  CHECK(quantile(0.5) - quantile(0.1587) == Approx(papirs.sd).epsilon(0.03));
-  // Nearly all are at least as sensitive as guaranteed, and less than twice.
-  CHECK(quantile(0.005) > 0.0);
-  CHECK(quantile(0.995) < std::log(2.0));
+  CHECK(std::exp(logs[n_rooms / 10]) * papirs.median ==
+        Approx(unit_sensitivity(scene, Units::low, seed, 0)).epsilon(0.03));
 }
 
 TEST_CASE("units multiply the gains of the study in force, each sensor's own, whatever the other sensors", "[units]") {
@@ -66,7 +74,7 @@ TEST_CASE("units multiply the gains of the study in force, each sensor's own, wh
     return found;
   };
   CHECK(gains(Units::guaranteed) == std::vector{1.0, 2.0, 1.0});
-  CHECK(gains(Units::typical) == std::vector{1.36, 2.0 * 1.36, 1.36});
+  CHECK(gains(Units::typical) == std::vector{1.4, 2.0 * 1.4, 1.4});
   const std::vector<double> drawn = gains(Units::drawn);
   CHECK(drawn == gains(Units::drawn));
   CHECK(drawn[0] != drawn[2]);
