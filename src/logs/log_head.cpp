@@ -288,7 +288,8 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
                 "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
   }
   if (table.header_line > 0) std::erase_if(table.rows, is_other);
-  if (table.rows.size() > 2 && table.rows.back().size() < n) table.rows.pop_back();  // cut off
+  constexpr std::size_t fewest = 9;  // of fewer rows a shorter one may be a kind of its own
+  if (table.rows.size() >= fewest && table.rows.back().size() < n) table.rows.pop_back();  // cut off
   for (auto& row : table.rows) row.resize(n);
   return table;
 }

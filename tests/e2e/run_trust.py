@@ -113,8 +113,8 @@ class Trust(unittest.TestCase):
         subprocess.run([sys.executable, TOOL, PIRSIM, self.folder / "out", "device", "--page", page], check=True,
                        capture_output=True)
         lines = page.read_text().split("\n")
-        self.assertEqual([lines[0], lines[-3], len(lines)], ["before", "kept", 14])
-        self.assertEqual(len([line for line in lines if "crossings at" in line]), 4)
+        self.assertEqual([lines[0], lines[-3], len(lines)], ["before", "kept", 17])
+        self.assertEqual(len([line for line in lines if "crossings at" in line]), 7)
         self.assertNotIn("old", lines)
 
 
