@@ -6,6 +6,8 @@ Usage: run_trust.py PIRSIM TOOLS_DIR [unittest arguments]. Needs python3 only.
 import csv
 import importlib.machinery
 import importlib.util
+import io
+import json
 import pathlib
 import random
 import re
@@ -105,6 +107,27 @@ class Trust(unittest.TestCase):
         self.assertEqual(len(spells), 2)
         self.assertLess(abs(spells[0][0] - 20), 1)
         self.assertGreater(spells[1][0] - spells[0][1], 19)
+
+    def test_a_bought_sensor_notices_who_walks_past_as_far_as_rated_and_not_twice_as_far(self):
+        for model, metres in (("AM312", 5), ("SML001", 5), ("E1745", 5), ("SNZB-03", 6), ("RTCGQ11LM", 7)):
+            nodes = [{"name": "floor", "extras": {"pirsim": {
+                "type": "floor", "polygon_xz_m": [[-7, 1], [7, 1], [7, -18], [-7, -18]]}}},
+                {"name": "sensor", "translation": [0, 1.2, 0],
+                 "extras": {"pirsim": {"type": "sensor", "id": "PIR", "model": model}}}]
+            scene = self.folder / "walk.gltf"
+            scene.write_text(json.dumps({"asset": {"version": "2.0"}, "scene": 0, "nodes": nodes, "scenes": [{"nodes": [0, 1]}]}))
+
+            def seen(far):
+                script = self.folder / "walk.yaml"
+                script.write_text("pirsim_script: 1\nreplicates: 10\npeople:\n  - {id: one, style: natural, actions: ["
+                                  f"{{appear: {{at_xz_m: [-5, {-far}], heading_deg: -90}}}}, {{wait_s: 20}}, "
+                                  f"{{walk: {{to_xz_m: [[5, {-far}]]}}, phase: across}}]}}\n")
+                rows = subprocess.run([PIRSIM, "--scene", scene, "--script", script, "-q"], check=True, capture_output=True,
+                                      text=True).stdout
+                return len({r["replicate"] for r in csv.DictReader(io.StringIO(rows)) if r["phase"] == "across" and r["PIR"] == "1"})
+            with self.subTest(model):
+                self.assertGreaterEqual(seen(metres), 9)
+                self.assertLessEqual(seen(2 * metres), 1)
 
     def test_a_figure_comes_into_its_page(self):
         page = self.folder / "page.md"

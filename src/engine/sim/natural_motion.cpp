@@ -37,7 +37,7 @@ constexpr StillPeriods while_walking = awake(9.0);      // assumed (4-18): looks
 constexpr StillPeriods while_eating = awake(7.5);       // assumed (4-12): chews
 constexpr StillPeriods at_stove_or_basin = awake(3.0);  // assumed (1.5-6): the hands are at work
 // Eleven movements an hour, of one act or several in a row. Ref: [Montini2024]
-constexpr StillPeriods while_asleep{320.0, 0.4};  // goes on: assumed (0.2-0.6)
+constexpr StillPeriods while_asleep{320.0, 0.4};  // another act at once: assumed (0.2-0.6)
 
 constexpr const char* assumed = "assumed";
 constexpr const char* reading_speed = "weight: a page of 300 words takes 75 s at 238 words a minute [Brysbaert2019]";
@@ -226,10 +226,11 @@ using body::Channel;
 using body::Stage;
 
 constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of a person's rate
-constexpr double day_sd =
-    0.35;  // fitted to three days of a room (0.2-0.5): of the logarithm of everybody's rate on a day
-constexpr double per_other = 0.25;   // fitted to two meeting rooms: how much more a listener moves for each further one
-constexpr double pace_sd_m_s = 0.2;  // Ref: [Weidmann1993]: 0.26 in the open
+// Of the logarithm of everybody's rate on a day: fitted to three days of a room (0.2-0.5).
+constexpr double day_sd = 0.35;
+// How much more a listener moves for each other person: fitted to two meeting rooms (0.25-1).
+constexpr double per_other = 0.25;
+constexpr double pace_sd_m_s = 0.2;                                 // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
 // How far the chest comes forward while head and limbs lie still: of sitters, Ref: [DeGroote1997]: 3 to 5 mm; lying,
 // where the belly moves more [KanekoHorie2012], assumed (3-10).

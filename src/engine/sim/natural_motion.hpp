@@ -54,7 +54,7 @@ struct Hold {
 /// Still periods are log-normal up to the longest.
 struct StillPeriods {
   double mean_s;         ///< were there no longest
-  double goes_on = 0.0;  ///< probability that an act follows on another one without any: bouts
+  double goes_on = 0.0;  ///< probability that after an act another one follows at once: bouts
   double longest_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] double length_s(Stream& stream) const noexcept;

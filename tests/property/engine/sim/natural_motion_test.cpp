@@ -209,6 +209,45 @@ TEST_CASE("still periods of natural sitters are log-normal, longer for readers",
   CHECK(distance_from_log_normal(by_power_law, low_s, 7.5, 1.0) > refused);
 }
 
+TEST_CASE("nobody awake is still for more than five minutes, who sleeps is") {
+  Stream stream({2, 0, 0, Purpose::test});
+  const auto longest = [&](Activity activity) {
+    // Of somebody a fifth as lively as others, who would be still for longest.
+    const sim::StillPeriods still = sim::repertoire(sim::Bearing::seated, activity, sim::Talk::none).still.at_rate(0.2);
+    double found_s = 0.0;
+    for (int i = 0; i < 20000; ++i) found_s = std::max({found_s, still.length_s(stream), still.rest_s(stream)});
+    return found_s;
+  };
+  for (const Activity activity : activities) {
+    INFO(name_of(activity));
+    CHECK(longest(activity) <= 300.0);
+    CHECK(longest(activity) > 250.0);
+  }
+  CHECK(longest(Activity::sleeping) > 1000.0);
+}
+
+TEST_CASE("who listens moves more the more there are in the conversation", "[seconds]") {
+  const auto acts_an_hour = [](std::size_t n_others) {
+    double acts = 0.0, lively = 0.0;
+    for (std::uint32_t person = 0; person < 6; ++person) {
+      Sitter sitter(person, man(), desk_seat());
+      for (int tick = 0; tick < 1800 * tick_rate_hz; ++tick)
+        sitter.tick(Activity::meeting, {sim::Talk::listens, 0.3, n_others});
+      acts += static_cast<double>(sitter.natural.begun(ActKind::shift) + sitter.natural.begun(ActKind::fidget));
+      lively += 0.5 * sitter.natural.liveliness();
+    }
+    return std::pair{acts / lively, std::sqrt(acts) / lively};
+  };
+  const auto [few, few_error] = acts_an_hour(1);
+  const auto [many, many_error] = acts_an_hour(7);
+  const auto off = [&](double times) {
+    return std::abs(many - times * few) / std::hypot(many_error, times * few_error);
+  };
+  INFO(few << " +- " << few_error << " and " << many << " +- " << many_error << " an hour");
+  CHECK(off(2.75 / 1.25) < 3.5);
+  CHECK(off(1.0) > 3.5);  // must fail: as if company made no difference
+}
+
 TEST_CASE("trunk, hands and head that move independently leave as few long stillnesses as the law's lower end") {
   // Gaps as log-normal as looks at a screen are, at the published rates of trunk, hands to oneself, screens and head.
   constexpr double spread = 1.7, hours = 5000.0;
