@@ -100,7 +100,7 @@ def run_page(page, place, folder, environment, source):
 def main():
     pirsim, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     chosen = [pathlib.Path(page).resolve() for page in sys.argv[3:]] or pages(source)
-    ran = 0
+    ran, faults = 0, []
     for page in chosen:
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name) / "work"
@@ -113,7 +113,11 @@ def main():
             (pathlib.Path(name) / "bin/pirsim").symlink_to(pirsim)
             environment = {**os.environ, "PATH": f"{name}/bin:{os.environ['PATH']}",
                            "PIRSIM_DATA_DIR": str(source / "data")}
-            ran += run_page(page, page.relative_to(source), folder, environment, source)
+            try:
+                ran += run_page(page, page.relative_to(source), folder, environment, source)
+            except AssertionError as fault:
+                faults.append(str(fault))
+    assert not faults, "\n\n".join(faults)
     print(f"{ran} blocks of {len(chosen)} pages ran")
     assert ran >= len(sys.argv[3:]) and ran > 0
 

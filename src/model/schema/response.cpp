@@ -6,6 +6,9 @@
 #include <set>
 #include <string_view>
 
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
 #include "model/core/text.hpp"
 #include "model/schema/fields.hpp"
 #include "pirsim/random.hpp"
@@ -27,7 +30,7 @@ double unit_sensitivity(const SceneSpec& scene, Units units, std::uint64_t seed,
     case Units::typical:
       return make.median;
     case Units::low:
-      return make.median * std::exp(low_tenth * std::hypot(make.installation_sd, make.sd));
+      return make.median * std::exp(low_tenth * glm::length(glm::dvec2(make.installation_sd, make.sd)));
     case Units::drawn:
       break;
   }
