@@ -92,8 +92,8 @@ PAPIRS_DETECTOR = {
 
 # Mount, trimmer and what stands before a sensor weigh more than its make: docs/physics/analog.md#units
 IN_ROOMS = {
-    "median": (2.4, "fitted: to a house, an office and a meeting room; range considered 1.4 to 5.4"),
-    "installation_sd": (0.8, "fitted: to these rooms, a bench and a study cube; range considered 0.5 to 0.9"),
+    "median": (4.1, "fitted: a bench, an office, a study cube, meeting rooms and a house have 1.1 to 9.6; range considered 0.8 to 12.8"),
+    "installation_sd": (0.9, "fitted: to the same five; range considered 0.5 to 1"),
 }
 PAPIRS_SENSITIVITY = IN_ROOMS | {
     "sd": (0.1, "assumed: 7.6 uW/cm2, the most, lies three standard deviations off the average, ln(7.6 / 5.6) / 3; "
@@ -197,8 +197,8 @@ DUAL_DETECTOR = {
                              "assumed for circuits of another kind"),
     },
 }
-HC_SR501 = (1.6, "fitted: a bench has 1.1, an office and a study cube 2 to 2.6, trimmers at their most; half of it with the "
-                 "trimmer at half; range considered 1.1 to 2.6")
+HC_SR501 = (2.3, "fitted: a bench has 1.1, an office 3.1 and a study cube 3.7, trimmers at their most; half of it with the "
+                 "trimmer at half; range considered 0.8 to 12.8")
 AS_A_WALKER = (0.7, "inferred: somebody who walks past is just noticed at the rated distance; range considered 0.5 to 1.1")
 UNITS_SD = (0.2, "assumed: twice that of PaPIRs, since nobody promises a least; range considered 0.1 to 0.4")
 A_STAGE = (2.5, "inferred: two stages of 10 uF and 10 kOhm, 1.6 Hz each (the module's circuit); range considered 0.3 to 2.5")
