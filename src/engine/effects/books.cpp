@@ -84,24 +84,21 @@ void draw_dead_sensor(EffectSpec& effect, const SceneSpec& scene, const ScriptSp
 }
 
 Effect dead_sensor() {
-  return {
-      .info = {.name = "dead_sensor",
-               .family = Family::data,
-               .stage = "books",
-               .summary =
-                   "A sensor's telegrams are lost: all (dead) or a share of them (dying, or a bad radio), from a "
-                   "moment of the run on. A sensor that is asked in every window loses that row's motion. One that "
-                   "holds motion sends on and off: its column stays as it was until the next telegram comes through.",
-               .fingerprint = "one column empty or thinned, the others fit",
-               .as_if = "rows of a sensor were lost",
-               .confused_with = {"missed_triggers"},
-               .parameters = {told_as("share of rows lost", strength("loss", "", 1.0, 0.5, 1.0, 1.0, "assumed")),
-                              detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7, "assumed")},
-               .choices = {sensor_choice()},
-               .reach = Reach::rows,
-               .idle_in = {Survey::walk_test}},
-      .make_row_stage = make_dead_sensor,
-      .draw = draw_dead_sensor};
+  return {.info = {.name = "dead_sensor",
+                   .family = Family::data,
+                   .stage = "books",
+                   .summary = "From a moment of the run on, all of a sensor's telegrams are lost (dead), or a share of "
+                              "them (dying, or a bad radio).",
+                   .fingerprint = "one column is empty or thinned, the others fit",
+                   .as_if = "rows of a sensor were lost",
+                   .confused_with = {"missed_triggers"},
+                   .parameters = {told_as("share of rows lost", strength("loss", "", 1.0, 0.5, 1.0, 1.0, "assumed")),
+                                  detail("from_s", "s", 0.0, 0.0, 120.0, 0.0, 1e7, "assumed")},
+                   .choices = {sensor_choice()},
+                   .reach = Reach::rows,
+                   .idle_in = {Survey::walk_test}},
+          .make_row_stage = make_dead_sensor,
+          .draw = draw_dead_sensor};
 }
 
 // labels_swapped: two sensors' columns are swapped.
@@ -236,17 +233,16 @@ Effect people_miscounted() {
   return {.info = {.name = "people_miscounted",
                    .family = Family::data,
                    .stage = "books",
-                   .summary = "For a part of the time one person more, or one fewer, was there than the counts of an "
-                              "occupancy say. Nothing else changes; a script without counts stays as it is.",
+                   .summary = "For part of the time one person more, or one fewer, was there than the counts of an "
+                              "`occupancy` say. It needs such counts.",
                    .fingerprint = "all sensors have more motion, or less, in stretches of one number of people",
                    .as_if = "people were miscounted for a while",
                    .confused_with = {"second_person", "missed_triggers", "range_scale"},
-                   .parameters = {told_as("share of the time",
-                                          strength("share", "", 0.3, 0.05, 1.0, 1.0,
-                                                   "assumed: of the time of all runs, in one stretch")),
+                   .parameters = {told_as("share of the time", strength("share", "", 0.3, 0.05, 1.0, 1.0,
+                                                                        "assumed: of all runs' time, in one stretch")),
                                   told_as("begin (0 early, 1 late)",
                                           detail("begin", "", 0.5, 0.0, 1.0, 0.0, 1.0,
-                                                 "any: 0 at the beginning, 1 as late as it can be"))},
+                                                 "any: 0 at the beginning, 1 as late as possible"))},
                    .choices = {{"there_was",
                                 ChoiceKind::variant,
                                 {"one_more_than_told", "one_fewer_than_told"},
@@ -298,21 +294,19 @@ std::unique_ptr<RowStage> make_telegram_collisions(const EffectSpec& effect, con
 }
 
 Effect telegram_collisions() {
-  return {
-      .info = {.name = "telegram_collisions",
-               .family = Family::electronics,
-               .stage = "books",
-               .summary = "Sensors share a channel: of those that see motion in the same window (that go on or off, "
-                          "if they hold motion), all telegrams are lost, or all but one at random, with one "
-                          "probability a window.",
-               .fingerprint = "rows with motion at two sensors or more are rare, each sensor alone fits",
-               .confused_with = {"missed_triggers", "dead_time"},
-               .parameters = {told_as("probability of a collision",
-                                      strength("probability", "", 0.6, 0.2, 1.0, 1.0, "assumed"))},
-               .choices = {{"survivor", ChoiceKind::variant, {"none", "one"}, "none"}},
-               .reach = Reach::rows,
-               .idle_in = {Survey::walk_test}},
-      .make_row_stage = make_telegram_collisions};
+  return {.info = {.name = "telegram_collisions",
+                   .family = Family::electronics,
+                   .stage = "books",
+                   .summary = "Sensors share a channel. Where several report in one window (see motion or, if they "
+                              "hold motion, go on or off), all their telegrams are lost, or all but a random one.",
+                   .fingerprint = "rows with motion at two sensors or more are rare, each sensor alone fits",
+                   .confused_with = {"missed_triggers", "dead_time"},
+                   .parameters = {told_as("probability of a collision",
+                                          strength("probability", "", 0.6, 0.2, 1.0, 1.0, "assumed"))},
+                   .choices = {{"survivor", ChoiceKind::variant, {"none", "one"}, "none"}},
+                   .reach = Reach::rows,
+                   .idle_in = {Survey::walk_test}},
+          .make_row_stage = make_telegram_collisions};
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ std::string in_script(const Effect& effect) {
 }
 
 std::string same_as_sentence(const EffectInfo& info) {
-  return "The same change of the model as " + info.same_as + ": reconcile judges both as one, by that name.";
+  return "It changes the model as " + info.same_as + " does, so reconcile judges both as one, by that name.";
 }
 
 /// With which the name of a parameter in that unit ends.
@@ -232,6 +232,13 @@ std::string spaced(std::string text) {
   return text;
 }
 
+/// As limits_of(), off_of() and range_of() give them, but without the unit with which the parameter's name ends.
+ParameterInfo without_named_unit(ParameterInfo parameter) {
+  const std::string_view suffix = suffix_of(parameter.unit);
+  if (!suffix.empty() && parameter.name.ends_with(suffix)) parameter.unit.clear();
+  return parameter;
+}
+
 void add_markdown(std::ostream& out, const Effect& effect) {
   const EffectInfo& info = effect.info;
   out << "### " << info.name << '\n' << info.summary << "\n\n";
@@ -239,17 +246,15 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
   if (!info.in_analog.empty()) out << "With analog sensors: " << info.in_analog << ".\n";
-  out << '\n';
-  for (const ParameterInfo& parameter : info.parameters) {
-    out << "- `" << parameter.name << "` (";
-    if (parameter.role != Role::detail) out << "off " << off_of(parameter) << ", ";
-    out << "typical " << with_unit(parameter.typical, parameter.unit) << "): prior " << range_of(parameter)
-        << "; accepted " << limits_of(parameter) << "; " << source_of(parameter) << '\n';
+  out << "\n| key | off | typical | prior | accepted | source |\n|---|---|---|---|---|---|\n";
+  for (const ParameterInfo& given : info.parameters) {
+    const ParameterInfo parameter = without_named_unit(given);
+    out << "| `" << parameter.name << "` | " << (parameter.role == Role::detail ? "" : off_of(parameter) + " ") << "| "
+        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << limits_of(parameter)
+        << " | " << source_of(parameter) << " |\n";
   }
   for (const ChoiceInfo& choice : info.choices) {
-    out << "- `" << choice.name << "`: ";
-    if (is_word(choice.kind)) out << values_of(choice) << "; ";
-    out << "default " << choice.otherwise << '\n';
+    out << "| `" << choice.name << "` | | " << choice.otherwise << " | | " << values_of(choice) << " | |\n";
   }
   out << '\n';
 }

@@ -82,10 +82,9 @@ Effect missed_triggers() {
   return {.info = {.name = "missed_triggers",
                    .family = Family::electronics,
                    .stage = "electronics",
-                   .summary =
-                       "Triggers are lost with one probability, independently, before the sensor holds its motion: "
-                       "those of a window altogether, or each by itself, which weak signals suffer from. It stays, or "
-                       "grows from run to run (a battery runs down) and is the mean over the study's runs.",
+                   .summary = "Triggers are lost at random before the sensor holds its motion: all of a window "
+                              "together, or each by itself, which hits weak signals hardest. The probability stays, or "
+                              "grows about this mean from run to run as a battery runs down.",
                    .fingerprint = "all cells scaled by the same factor, or later ones more; isolated zeros",
                    .confused_with = {"dead_time", "thermal_contrast", "dead_sensor"},
                    .parameters = {told_as("probability of a miss", strength("probability", "", 0.2, 0.05, 0.6, 1.0,
@@ -97,8 +96,8 @@ Effect missed_triggers() {
                                trend_choice(),
                                sensor_choice()},
                    .reach = Reach::triggers,
-                   .in_analog = "the same; a trigger is a tick at which the comparator's output is on, so short pulses "
-                                "suffer most. A threshold set too high is range_scale below 1"},
+                   .in_analog = "a trigger is a tick at which the comparator's output is on, so short pulses suffer "
+                                "most; for a threshold set too high take range_scale below 1"},
           .make_stage = make_missed_triggers,
           .draw = draw_trend};
 }
@@ -142,10 +141,8 @@ Effect dead_time() {
   return {.info = {.name = "dead_time",
                    .family = Family::electronics,
                    .stage = "electronics",
-                   .summary =
-                       "After a trigger a sensor is blind for a fixed time, which a trigger meanwhile doesn't prolong "
-                       "(non-paralysable) or starts anew (paralysable). A sensor that holds its motion holds that "
-                       "trigger.",
+                   .summary = "After a trigger a sensor is blind for a fixed time. A trigger within it is ignored "
+                              "(non-paralysable) or starts the time anew (paralysable).",
                    .fingerprint = "no short gaps between ones; busy cells are capped",
                    .confused_with = {"missed_triggers", "pulse_stretching"},
                    .parameters = {told_as("dead time",
@@ -210,10 +207,9 @@ Effect pulse_stretching() {
       .info = {.name = "pulse_stretching",
                .family = Family::electronics,
                .stage = "electronics",
-               .summary =
-                   "A sensor's output stays high for a while after each trigger, across the poll. A trigger meanwhile "
-                   "starts that time anew, or is ignored. The time stays, or grows from run to run (a capacitor that "
-                   "ages) and is the mean over the study's runs.",
+               .summary = "A sensor's output stays high for a hold after each trigger, beyond the window's end if need "
+                          "be. A trigger within the hold starts it anew, or is ignored. The hold stays, or grows about "
+                          "this mean from run to run as a capacitor ages.",
                .fingerprint =
                    "runs of ones are longer, gaps shorter; cells with much scattered activity rise most, or later ones",
                .confused_with = {"dead_time", "fidgeting"},
@@ -245,8 +241,7 @@ Effect clock_lag() {
                    .family = Family::electronics,
                    .stage = "electronics",
                    .summary =
-                       "Rows are stamped late (positive) or early by a fixed time that may grow: the logger's clock is "
-                       "off.",
+                       "The logger's clock is off: rows are stamped late (positive) or early, by a time that may grow.",
                    .fingerprint = "the peak after a change of posture moves in its cycle; sums hardly change",
                    .confused_with = {"trunk_tilt", "arm_motion"},
                    .parameters = {offset("lag_s", "s", 15.0, 3.0, 600.0, "assumed: a clock set by hand"),

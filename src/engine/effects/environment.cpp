@@ -86,7 +86,7 @@ Effect warm_chair() {
       .info = {.name = "warm_chair",
                .family = Family::environment,
                .stage = "environment",
-               .summary = "A seat that was left triggers the sensors that see it, at a rate that decays.",
+               .summary = "A seat that somebody left triggers the sensors that see it, at a rate that decays.",
                .fingerprint = "activity after leaving, where a sensor sees the seat",
                .confused_with = {"false_triggers", "fidgeting"},
                .parameters = {logarithmic(
@@ -94,7 +94,7 @@ Effect warm_chair() {
                               logarithmic(detail("decay_s", "s", 120.0, 60.0, 300.0, 1.0, 3600.0, "assumed: to 1/e"))},
                .choices = {sensor_choice()},
                .reach = Reach::triggers,
-               .in_analog = "the same, behind the comparator: the seat's own heat isn't traced",
+               .in_analog = "triggers come in behind the comparator; the seat's own heat isn't traced",
                .idle_in = {Survey::coverage, Survey::walk_test}},
       .make_stage = make_warm_chair};
 }
@@ -155,23 +155,20 @@ void draw_false_triggers(EffectSpec& effect, const SceneSpec& scene, const Scrip
 
 Effect false_triggers() {
   return {
-      .info =
-          {.name = "false_triggers",
-           .family = Family::environment,
-           .stage = "environment",
-           .summary =
-               "Sensors trigger at random moments without anybody's doing, each by itself, or all at the same "
-               "moments, as a disturbed supply makes them. The rate stays, or grows from run to run and is the mean "
-               "over the study's runs.",
-           .fingerprint =
-               "silent cells come alive, all by the same amount, or later ones more; single ones, at any moment",
-           .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
-           .parameters = {logarithmic(strength("rate_per_s", "1/s", 0.01, 0.0005, 0.06, 10.0,
-                                               "assumed: from one in half an hour to one in 17 s"))},
-           .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
-                       trend_choice(),
-                       sensor_choice()},
-           .reach = Reach::triggers},
+      .info = {.name = "false_triggers",
+               .family = Family::environment,
+               .stage = "environment",
+               .summary = "Sensors trigger at random moments though nobody moves: each by itself, or all at once, as a "
+                          "disturbed supply makes them. The rate stays, or grows about this mean from run to run.",
+               .fingerprint =
+                   "silent cells gain motion, all by the same amount, or later ones more; single seconds at any moment",
+               .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
+               .parameters = {logarithmic(strength("rate_per_s", "1/s", 0.01, 0.0005, 0.06, 10.0,
+                                                   "assumed: from one in half an hour to one in 17 s"))},
+               .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
+                           trend_choice(),
+                           sensor_choice()},
+               .reach = Reach::triggers},
       .make_stage = make_false_triggers,
       .draw = draw_false_triggers};
 }
@@ -231,7 +228,7 @@ Effect trigger_bursts() {
   return {.info = {.name = "trigger_bursts",
                    .family = Family::environment,
                    .stage = "environment",
-                   .summary = "Bursts of triggers come back periodically: ventilation, sun through a blind.",
+                   .summary = "Bursts of triggers come back periodically, from ventilation or sun through a blind.",
                    .fingerprint = "groups of ones a period apart, whoever sits where",
                    .confused_with = {"false_triggers"},
                    .parameters = {logarithmic(strength("length_s", "s", 3.0, 1.0, 10.0, 600.0, "assumed")),
@@ -277,7 +274,7 @@ Effect seats_shifted() {
   return {.info = {.name = "seats_shifted",
                    .family = Family::data,
                    .stage = "books",
-                   .summary = "Seat names are shifted: each names the seat so many places further.",
+                   .summary = "Each seat's name means the seat that is `places` further on.",
                    .fingerprint = "rows of the table of sums are permuted",
                    .as_if = "trials were noted under the names of other seats",
                    .confused_with = {"mirrored_room"},
@@ -376,8 +373,7 @@ Effect mirrored_room() {
       .info = {.name = "mirrored_room",
                .family = Family::data,
                .stage = "books",
-               .summary =
-                   "The room was drawn mirrored, seats, doors and furniture; the sensors hang where they are drawn.",
+               .summary = "Seats, doors and furniture were drawn mirrored; sensors hang where they are drawn.",
                .fingerprint = "seats have changed places with those on the other side",
                .as_if = "left and right of the room were mixed up",
                .confused_with = {"seats_shifted", "labels_swapped"},
@@ -438,14 +434,15 @@ Effect missing_occluder() {
       .info = {.name = "missing_occluder",
                .family = Family::occlusion,
                .stage = "placement",
-               .summary = "Chair backs at all seats, or a box somewhere, hide people; nobody has to walk round them.",
-               .fingerprint = "some pairs of seat and sensor fall silent, the others stay as they are",
+               .summary = "Chair backs at all seats, or a box somewhere, hide people. Nobody has to walk round them.",
+               .fingerprint = "some pairs of seat and sensor fall silent, the others stay",
                .confused_with = {"thermal_contrast", "range_scale"},
                .parameters = {strength("height_m", "m", 0.45, 0.2, 0.7, 5.0,
                                        "assumed: of a chair's back above the seat", {"what", "chair_backs"}),
-                              strength("box_height_m", "m", 1.5, 1.0, 2.0, 5.0,
-                                       "assumed: above the floor; a plant, a screen on a stand, a pillar's lower part",
-                                       {"what", "box"}),
+                              strength(
+                                  "box_height_m", "m", 1.5, 1.0, 2.0, 5.0,
+                                  "assumed: above the floor: a plant, a screen on a stand, the lower part of a pillar",
+                                  {"what", "box"}),
                               detail("width_m", "m", 0.45, 0.35, 0.6, 0.01, 20.0, "assumed: a box is as deep as wide"),
                               floor_coordinate("x_m", {"what", "box"}), floor_coordinate("z_m", {"what", "box"})},
                .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},

@@ -33,32 +33,28 @@ void alter_thermal_contrast(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect thermal_contrast() {
-  return {
-      .info = {.name = "thermal_contrast",
-               .family = Family::optics,
-               .stage = "optics",
-               .summary = "People stand out from the background by another temperature than the rated 4 K.",
-               .fingerprint = "far zones fall silent or reach further, by the square root of the contrast",
-               .confused_with = {"range_scale", "missed_triggers", "body_size"},
-               .same_as = "range_scale",
-               .parameters = {{.name = "delta_t_k",
-                               .unit = "K",
-                               .phrase = "difference in temperature",
-                               .off = rated_k,
-                               .typical = 2.0,
-                               .low = 1.0,
-                               .high = 12.0,
-                               .least = 0.01,
-                               .most = 40.0,
-                               .scale = Scale::logarithmic,
-                               .source =
-                                   "Panasonic data sheet EKMC: rated at 4 K; range assumed: warm clothes in a warm "
-                                   "room to bare skin in a cool one; only its size counts: surroundings warmer by as "
-                                   "much change zones alike"}},
-               .reach = Reach::geometry,
-               .in_analog = "as range_scale: another gain. Temperatures are the scene's and people's: `ambient_c`, "
-                            "`warmth`"},
-      .alter = alter_thermal_contrast};
+  return {.info = {.name = "thermal_contrast",
+                   .family = Family::optics,
+                   .stage = "optics",
+                   .summary = "People differ from the background by another temperature than the rated 4 K.",
+                   .fingerprint = "far zones fall silent or reach further, by the square root of the contrast",
+                   .confused_with = {"range_scale", "missed_triggers", "body_size"},
+                   .same_as = "range_scale",
+                   .parameters = {{.name = "delta_t_k",
+                                   .unit = "K",
+                                   .phrase = "difference in temperature",
+                                   .off = rated_k,
+                                   .typical = 2.0,
+                                   .low = 1.0,
+                                   .high = 12.0,
+                                   .least = 0.01,
+                                   .most = 40.0,
+                                   .scale = Scale::logarithmic,
+                                   .source = "Panasonic data sheet EKMC: rated at 4 K; range assumed: warm clothes in "
+                                             "a warm room to bare skin in a cool one; the sign doesn't matter"}},
+                   .reach = Reach::geometry,
+                   .in_analog = "another gain, as range_scale; `ambient_c` and `warmth` set temperatures"},
+          .alter = alter_thermal_contrast};
 }
 
 // range_scale: a lens reaches further than its data sheet promises, or less far.
@@ -68,19 +64,18 @@ void alter_range_scale(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect range_scale() {
-  return {
-      .info = {.name = "range_scale",
-               .family = Family::optics,
-               .stage = "optics",
-               .summary = "All rated detection distances are wrong by one factor.",
-               .fingerprint = "only seats near the end of a range change",
-               .confused_with = {"thermal_contrast", "body_size"},
-               .parameters = {factor("scale", 0.5, 1.8, 0.8,
-                                     "assumed: a data sheet promises a least distance, a lens ages")},
-               .reach = Reach::geometry,
-               .in_analog = "another gain: such that the rated target is just detected at that many times the rated "
-                            "distance. A threshold that is set otherwise looks the same"},
-      .alter = alter_range_scale};
+  return {.info = {.name = "range_scale",
+                   .family = Family::optics,
+                   .stage = "optics",
+                   .summary = "All rated detection distances are wrong by one factor.",
+                   .fingerprint = "only seats near the end of a range change",
+                   .confused_with = {"thermal_contrast", "body_size"},
+                   .parameters = {factor("scale", 0.5, 1.8, 0.8,
+                                         "assumed: a data sheet promises a least distance, a lens ages")},
+                   .reach = Reach::geometry,
+                   .in_analog = "a gain that just detects the rated target at `scale` times the rated distance; "
+                                "another threshold looks the same"},
+          .alter = alter_range_scale};
 }
 
 // soft_zone_edges: a lens throws a blurred image of its element: whether somebody at a zone's edge is seen is a matter
@@ -108,11 +103,10 @@ Effect soft_zone_edges() {
       .info = {.name = "soft_zone_edges",
                .family = Family::optics,
                .stage = "optics",
-               .summary =
-                   "Zones have blurred edges. What counts as motion: a change across an edge that each window and "
-                   "channel draws anew, a change of the covered share, or by chance what is swept.",
-               .fingerprint = "silent and low cells rise several-fold, high ones don't; isolated ones; a still person "
-                              "never triggers",
+               .summary = "Zones have blurred edges. By `rule`, motion is a change across an edge that is drawn anew "
+                          "for each window and channel, a change of the covered share, or, by chance, what is swept.",
+               .fingerprint = "silent and low cells rise several-fold, high cells don't; single seconds with motion; a "
+                              "still person never triggers",
                .confused_with = {"fidgeting", "false_triggers", "seat_scatter"},
                .parameters = {told_as("blur (standard deviation)",
                                       logarithmic(strength(
@@ -122,9 +116,8 @@ Effect soft_zone_edges() {
                                      {"rule", "covered_area"})},
                .choices = {{"rule", ChoiceKind::variant, {"drawn_edge", "covered_area", "swept_area"}, "drawn edges"}},
                .reach = Reach::geometry,
-               .in_analog =
-                   "more blur of the lens, beside its own `blur_deg` (root sum of squares); the gain stays. It "
-                   "follows the physics, so `rule` and `threshold` mean nothing"},
+               .in_analog = "adds to the lens's `blur_deg` (root sum of squares) and leaves the gain; `rule` and "
+                            "`threshold` mean nothing"},
       .alter = alter_soft_zone_edges,
       .draw = draw_soft_zone_edges};
 }
@@ -137,20 +130,19 @@ void alter_blind_field(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect blind_field() {
-  return {
-      .info =
-          {.name = "blind_field",
-           .family = Family::optics,
-           .stage = "optics",
-           .summary = "A part of a lens's field is blind, from its rim inwards.",
-           .fingerprint = "one sensor falls silent for the seats on one side of it, and is as it was for the others",
-           .confused_with = {"dead_sensor", "missing_occluder", "sensor_yaw", "sensor_tilt"},
-           .parameters = {told_as("blind share", strength("share", "", 0.4, 0.15, 0.8, 1.0, "assumed: of the rays")),
-                          detail("side_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0,
-                                 "any: where the blind part begins, from the lens's right (0) to its upper side (90)")},
-           .choices = {sensor_choice()},
-           .reach = Reach::geometry},
-      .alter = alter_blind_field};
+  return {.info = {.name = "blind_field",
+                   .family = Family::optics,
+                   .stage = "optics",
+                   .summary = "A part of a lens's field is blind, from its rim inwards.",
+                   .fingerprint = "one sensor falls silent for the seats on one side of it and keeps the others",
+                   .confused_with = {"dead_sensor", "missing_occluder", "sensor_yaw", "sensor_tilt"},
+                   .parameters =
+                       {told_as("blind share", strength("share", "", 0.4, 0.15, 0.8, 1.0, "assumed: of the rays")),
+                        detail("side_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0,
+                               "any: where the blind part begins, from the lens's right (0) to its upper side (90)")},
+                   .choices = {sensor_choice()},
+                   .reach = Reach::geometry},
+          .alter = alter_blind_field};
 }
 
 // wall_reflection: a window, a screen or a steel cupboard mirrors far infrared: sensors see people in it.
@@ -198,24 +190,24 @@ Effect wall_reflection() {
       .info = {.name = "wall_reflection",
                .family = Family::environment,
                .stage = "optics",
-               .summary =
-                   "Rays go on mirrored at a glossy wall, with the range that the weakened signal allows; a rough one "
-                   "scatters them.",
+               .summary = "A glossy wall mirrors rays, which go on as far as the weakened signal allows; a rough wall "
+                          "scatters them.",
                .fingerprint = "ghost zones: sensors see seats that they don't face",
                .confused_with = {"second_person", "false_triggers", "range_scale"},
-               .parameters = {told_as(
-                                  "mirrored share",
-                                  strength("coefficient", "", 0.5, 0.1, 0.95, 1.0,
-                                           "assumed: of power at 10 um; glass mirrors a tenth, bare metal nearly all")),
-                              detail("scatter_deg", "deg", 8.0, 3.0, 15.0, 0.0, 45.0,
-                                     "assumed: standard deviation of a mirrored ray's direction; brushed metal, "
-                                     "lacquer",
-                                     {"finish", "rough"})},
+               .parameters =
+                   {told_as(
+                        "mirrored share",
+                        strength("coefficient", "", 0.5, 0.1, 0.95, 1.0,
+                                 "assumed: share of the power at 10 um; glass mirrors a tenth, bare metal nearly all")),
+                    detail("scatter_deg", "deg", 8.0, 3.0, 15.0, 0.0, 45.0,
+                           "assumed: standard deviation of a mirrored ray's direction; brushed metal, "
+                           "lacquer",
+                           {"finish", "rough"})},
                .choices = {{"finish", ChoiceKind::variant, {"smooth", "rough"}, "smooth"},
                            {"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors,
-               .in_analog = "nothing: the power that comes by a mirror isn't followed"},
+               .in_analog = "nothing: mirrored power isn't traced"},
       .alter = alter_wall_reflection,
       .draw = draw_wall_reflection};
 }
@@ -234,8 +226,8 @@ Effect dual_polarity() {
       .info = {.name = "dual_polarity",
                .family = Family::electronics,
                .stage = "detector",
-               .summary = "Zones count with their element's sign; a sensor triggers while their band-passed sum is "
-                          "beyond a threshold.",
+               .summary = "Zones count with the sign of their element; a sensor triggers while their band-passed sum "
+                          "is beyond a threshold.",
                .fingerprint =
                    "beams count one by one, so most cells change; slow motion is lost, and motion across both signs "
                    "at once; above a threshold of 1 most of everything",
@@ -248,7 +240,7 @@ Effect dual_polarity() {
                                                  "assumed: and end at 5-10 Hz"))},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors,
-               .in_analog = "nothing: an analog sensor has two elements, a band and a threshold as it is"},
+               .in_analog = "nothing: an analog sensor has two elements, a band and a threshold already"},
       .alter = alter_dual_polarity};
 }
 
@@ -282,8 +274,7 @@ Effect sensor_yaw() {
                    .fingerprint =
                        "cells change as the map shifts sideways: seats on one side gain what the other side loses",
                    .confused_with = {"sensor_tilt", "seat_shift"},
-                   .parameters = {offset("yaw_deg", "deg", 25.0, 3.0, 180.0,
-                                         "assumed: by eye, or knocked (8 and 25 were tried)")},
+                   .parameters = {offset("yaw_deg", "deg", 25.0, 3.0, 180.0, "assumed: mounted by eye, or knocked")},
                    .choices = {sensor_choice()},
                    .reach = Reach::geometry},
           .alter = alter_sensor_yaw};
@@ -304,9 +295,9 @@ Effect sensor_tilt() {
                    .family = Family::mounting,
                    .stage = "placement",
                    .summary = "Sensors look further down (positive) or up than drawn.",
-                   .fingerprint = "near and far seats change oppositely",
+                   .fingerprint = "near and far seats change in opposite directions",
                    .confused_with = {"sensor_height", "seat_shift", "sensor_yaw"},
-                   .parameters = {offset("tilt_deg", "deg", 6.0, 2.0, 90.0, "assumed: by eye")},
+                   .parameters = {offset("tilt_deg", "deg", 6.0, 2.0, 90.0, "assumed: mounted by eye")},
                    .choices = {sensor_choice()},
                    .reach = Reach::geometry},
           .alter = alter_sensor_tilt};
@@ -365,8 +356,8 @@ Effect sensor_height() {
   return {.info = {.name = "sensor_height",
                    .family = Family::mounting,
                    .stage = "placement",
-                   .summary = "Sensors hang higher (positive) or lower than drawn; not through a ceiling.",
-                   .fingerprint = "near and far seats change oppositely, as with tilt",
+                   .summary = "Sensors hang higher (positive) or lower than drawn, but not through a ceiling.",
+                   .fingerprint = "as sensor_tilt",
                    .confused_with = {"sensor_tilt", "seat_shift"},
                    .parameters = {offset("height_m", "m", 0.3, -0.15, 3.0,
                                          "assumed: measured from the wrong edge; down where a ceiling is above")},

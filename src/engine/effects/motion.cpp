@@ -25,7 +25,7 @@ Effect arm_motion() {
   return {.info = {.name = "arm_motion",
                    .family = Family::motion,
                    .stage = "body",
-                   .summary = "Arms move further or less far, faster or slower than the script says.",
+                   .summary = "Arms move by another distance or period than the script says.",
                    .fingerprint = "the arms' line in the spectrum moves or changes its height",
                    .confused_with = {"trunk_tilt", "body_size", "fidgeting"},
                    .parameters = {factor("amplitude_scale", 0.3, 1.8, 0.6, "assumed"),
@@ -49,7 +49,7 @@ Effect trunk_tilt() {
   return {.info = {.name = "trunk_tilt",
                    .family = Family::motion,
                    .stage = "body",
-                   .summary = "Trunks tilt further or less far, more often or less often than the script says.",
+                   .summary = "Trunks tilt by another angle or period than the script says.",
                    .fingerprint = "the peak at every change of posture grows, shrinks or moves",
                    .confused_with = {"arm_motion", "clock_lag", "fidgeting"},
                    .parameters = {factor("amplitude_scale", 0.3, 1.8, 0.6, "assumed"),
@@ -74,8 +74,8 @@ Effect natural_motion() {
   return {.info = {.name = "natural_motion",
                    .family = Family::motion,
                    .stage = "body",
-                   .summary = "Everybody moves naturally instead of by the paper's choreography: still, then moving, "
-                              "at all scales of time.",
+                   .summary = "Everybody moves in the natural style instead of the paper's: still, then moving, at all "
+                              "scales of time.",
                    .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
                    .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
                    .parameters = {whether("present", "assumed")},
@@ -122,7 +122,7 @@ Effect trunk_sway() {
       .info = {.name = "trunk_sway",
                .family = Family::motion,
                .stage = "body",
-               .summary = "A seated person sways from side to side all the time: breathing, balancing, music.",
+               .summary = "A seated person always sways from side to side: breathing, balancing, music.",
                .fingerprint = "activity at a steady rhythm, where a zone's edge lies on trunk or head",
                .confused_with = {"fidgeting", "soft_zone_edges", "arm_motion"},
                .parameters = {logarithmic(strength("amplitude_deg", "deg", 1.0, 0.3, 3.0, 12.0,
@@ -168,26 +168,23 @@ void alter_fidgeting(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect fidgeting() {
-  return {
-      .info =
-          {.name = "fidgeting",
-           .family = Family::motion,
-           .stage = "body",
-           .summary =
-               "A seated person leans a little or turns the head at random moments: independent ones, or with still "
-               "periods of all lengths in between.",
-           .fingerprint = "activity without the arms' phase, where a sensor sees head or trunk",
-           .confused_with = {"false_triggers", "soft_zone_edges", "pulse_stretching"},
-           .parameters = {logarithmic(
-                              strength("rate_per_s", "1/s", 0.1, 0.01, 0.5, 5.0, "assumed: of moves, on average")),
-                          detail("tilt_deg", "deg", 4.0, 1.0, 10.0, 0.0, 15.0,
-                                 "assumed: the trunk moves to within so much of its scripted tilt"),
-                          detail("turn_deg", "deg", 40.0, 10.0, 70.0, 0.0, 80.0,
-                                 "assumed: the head turns to within so much of straight ahead")},
-           .choices = {{"timing", ChoiceKind::variant, {"independent", "still_periods"}, "independent"}},
-           .reach = Reach::geometry,
-           .idle_in = {Survey::coverage, Survey::walk_test}},
-      .alter = alter_fidgeting};
+  return {.info = {.name = "fidgeting",
+                   .family = Family::motion,
+                   .stage = "body",
+                   .summary = "A seated person leans a little or turns the head, at independent moments or with still "
+                              "periods of all lengths in between.",
+                   .fingerprint = "activity without the arms' phase, where a sensor sees head or trunk",
+                   .confused_with = {"false_triggers", "soft_zone_edges", "pulse_stretching"},
+                   .parameters = {logarithmic(strength("rate_per_s", "1/s", 0.1, 0.01, 0.5, 5.0,
+                                                       "assumed: of moves, on average")),
+                                  detail("tilt_deg", "deg", 4.0, 1.0, 10.0, 0.0, 15.0,
+                                         "assumed: the trunk stays this close to its scripted tilt"),
+                                  detail("turn_deg", "deg", 40.0, 10.0, 70.0, 0.0, 80.0,
+                                         "assumed: the head stays this close to straight ahead")},
+                   .choices = {{"timing", ChoiceKind::variant, {"independent", "still_periods"}, "independent"}},
+                   .reach = Reach::geometry,
+                   .idle_in = {Survey::coverage, Survey::walk_test}},
+          .alter = alter_fidgeting};
 }
 
 }  // namespace

@@ -188,27 +188,26 @@ void draw_second_person(EffectSpec& effect, const SceneSpec& scene, const Script
 void settle_second_person(EffectSpec& effect, const SceneSpec& scene) { settle_place(effect, scene, person_clear_m); }
 
 Effect second_person() {
-  return {
-      .info = {.name = "second_person",
-               .family = Family::motion,
-               .stage = "body",
-               .summary = "Somebody else is in the room for all of every trial: stands and turns, walks to and fro, or "
-                          "wanders from one free place to the next.",
-               .fingerprint = "sensors are active together that the scripted person can't reach at once",
-               .confused_with = {"false_triggers", "trigger_bursts", "warm_object"},
-               .parameters = {whether("present", "assumed"), place_coordinate("x_m"), place_coordinate("z_m"),
-                              detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any"),
-                              detail("path_m", "m", 0.0, 0.0, 0.0, 0.0, 100.0,
-                                     "assumed: how far to walk that way and back; 0: turns on the spot. Not drawn: "
-                                     "whether there is room to walk depends on the place",
-                                     {"moves", "stands"}),
-                              detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
-               .choices = {{"moves", ChoiceKind::variant, {"stands", "wanders"}, "stands"}, place_choice()},
-               .reach = Reach::geometry,
-               .idle_in = {Survey::coverage, Survey::walk_test}},
-      .alter = alter_second_person,
-      .draw = draw_second_person,
-      .settle = settle_second_person};
+  return {.info = {.name = "second_person",
+                   .family = Family::motion,
+                   .stage = "body",
+                   .summary = "Somebody else is in the room during all trials and stands and turns, walks to and fro, "
+                              "or wanders from one free place to the next.",
+                   .fingerprint = "sensors are active together though the scripted person can't reach both",
+                   .confused_with = {"false_triggers", "trigger_bursts", "warm_object"},
+                   .parameters = {whether("present", "assumed"), place_coordinate("x_m"), place_coordinate("z_m"),
+                                  detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any"),
+                                  detail("path_m", "m", 0.0, 0.0, 0.0, 0.0, 100.0,
+                                         "assumed: length of the walk there and back; 0 turns on the spot; never "
+                                         "drawn, since the place decides whether there is room",
+                                         {"moves", "stands"}),
+                                  detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
+                   .choices = {{"moves", ChoiceKind::variant, {"stands", "wanders"}, "stands"}, place_choice()},
+                   .reach = Reach::geometry,
+                   .idle_in = {Survey::coverage, Survey::walk_test}},
+          .alter = alter_second_person,
+          .draw = draw_second_person,
+          .settle = settle_second_person};
 }
 
 // warm_object: something warm moves that is no person and no pet (sim/pet.hpp): a robot, a fan.
@@ -254,24 +253,24 @@ void settle_warm_object(EffectSpec& effect, const SceneSpec& scene) { settle_pla
 
 Effect warm_object() {
   return {
-      .info = {.name = "warm_object",
-               .family = Family::environment,
-               .stage = "placement",
-               .summary = "Something warm moves: it roams from one free place to the next, as a robot does, or "
-                          "sweeps in place, as a fan or a curtain over a radiator.",
-               .fingerprint = "ones that have to do with a place and not with the person",
-               .confused_with = {"trigger_bursts", "second_person", "false_triggers"},
-               .parameters =
-                   {whether("present", "assumed"), place_coordinate("x_m"), place_coordinate("z_m"),
-                    detail("height_m", "m", 0.3, 0.2, 1.2, 0.1, 3.0, "assumed: a robot's to a stand fan's"),
-                    detail("speed_m_s", "m/s", 0.3, 0.1, 0.6, 0.02, 2.0, "assumed: a robot's 0.3, a cat's walk 0.6"),
-                    detail("every_s", "s", 10.0, 1.0, 60.0, 0.0, 3600.0, "assumed: rests so long at a place",
-                           {"moves", "roams"}),
-                    detail("sweep_m", "m", 0.3, 0.15, 0.6, 0.05, 5.0, "assumed: so far and back", {"moves", "sweeps"}),
-                    detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any", {"moves", "sweeps"})},
-               .choices = {{"moves", ChoiceKind::variant, {"roams", "sweeps"}, "roams"}, place_choice()},
-               .reach = Reach::geometry,
-               .idle_in = {Survey::coverage, Survey::walk_test}},
+      .info =
+          {.name = "warm_object",
+           .family = Family::environment,
+           .stage = "placement",
+           .summary = "Something warm roams from one free place to the next, as a robot does, or sweeps in place, as a "
+                      "fan or a curtain over a radiator does.",
+           .fingerprint = "motion that follows a place and not the person",
+           .confused_with = {"trigger_bursts", "second_person", "false_triggers"},
+           .parameters =
+               {whether("present", "assumed"), place_coordinate("x_m"), place_coordinate("z_m"),
+                detail("height_m", "m", 0.3, 0.2, 1.2, 0.1, 3.0, "assumed: a robot's to a stand fan's"),
+                detail("speed_m_s", "m/s", 0.3, 0.1, 0.6, 0.02, 2.0, "assumed: a robot's 0.3, a cat's walk 0.6"),
+                detail("every_s", "s", 10.0, 1.0, 60.0, 0.0, 3600.0, "assumed: rest at each place", {"moves", "roams"}),
+                detail("sweep_m", "m", 0.3, 0.15, 0.6, 0.05, 5.0, "assumed: length of the sweep", {"moves", "sweeps"}),
+                detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any", {"moves", "sweeps"})},
+           .choices = {{"moves", ChoiceKind::variant, {"roams", "sweeps"}, "roams"}, place_choice()},
+           .reach = Reach::geometry,
+           .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter_warm_object,
       .draw = draw_warm_object,
       .settle = settle_warm_object};
@@ -291,7 +290,7 @@ Effect seat_shift() {
                .family = Family::person,
                .stage = "placement",
                .summary = "Everybody sits further forward or back than the seats are drawn.",
-               .fingerprint = "rows of seats on opposite sides of the sensors move oppositely",
+               .fingerprint = "rows of seats on opposite sides of the sensors change in opposite directions",
                .confused_with = {"sensor_tilt", "sensor_height", "body_size"},
                .parameters = {offset("forward_m", "m", 0.25, 0.1, 1.0, "assumed: how far a chair is drawn to a table")},
                .reach = Reach::geometry,
@@ -317,7 +316,7 @@ Effect seat_scatter() {
   return {.info = {.name = "seat_scatter",
                    .family = Family::person,
                    .stage = "placement",
-                   .summary = "Where exactly and how turned people sit differs from run to run.",
+                   .summary = "Positions and headings of sitters differ from run to run.",
                    .fingerprint = "residuals of both signs without a change of the mean; replicates differ more",
                    .confused_with = {"seat_shift", "soft_zone_edges"},
                    .parameters = {told_as("scatter of positions",
