@@ -8,9 +8,11 @@ import importlib.machinery
 import importlib.util
 import io
 import json
+import math
 import pathlib
 import random
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -67,7 +69,7 @@ class Trust(unittest.TestCase):
     def test_silences_as_runs_of_letters(self):
         day = trust.readings(self.log(7))
         text = ""
-        for (before, _, _), (t, motion, people) in zip([day[0], *day], day):
+        for (before, *_), (t, motion, people, _) in zip([day[0], *day], day):
             text += ("|" if t - before > 31 else "") + ("q" if people and not motion else "|")
         for minutes in trust.SILENCES_MIN:
             self.assertEqual(sum(t["silent", minutes] for t in trust.office_tallies(day)),
@@ -76,11 +78,15 @@ class Trust(unittest.TestCase):
     def test_runs_of_motion_as_runs_of_letters(self):
         day = trust.readings(self.log(8, moves=0.4))
         text = ""
-        for (before, _, _), (t, motion, people) in zip([day[0], *day], day):
+        for (before, *_), (t, motion, people, _) in zip([day[0], *day], day):
             text += ("|" if t - before > 31 else "") + (str(people) if motion else "|")
         for people in trust.COUNTS:
             self.assertEqual(sum(t["runs", people] for t in trust.office_tallies(day)),
                              len(re.findall(f"{people}+", text)))
+
+    def test_unevenness_of_a_rooms_sensors(self):
+        day = [(30.0 * i, True, 1 + (i > 15), [i % 2 == 0, i % 8 == 0]) for i in range(20)]  # with one there 8 of 16, and 2
+        self.assertEqual(trust.unevenness(trust.office_tallies(day)), 0.25)
 
     def test_power_law(self):
         """2,000 values of a cut law: the exponent within four standard errors, and one that is off by 0.3 isn't."""
@@ -128,6 +134,27 @@ class Trust(unittest.TestCase):
             with self.subTest(model):
                 self.assertGreaterEqual(seen(metres), 9)
                 self.assertLessEqual(seen(2 * metres), 1)
+
+    def test_sensors_are_fitted_to_the_installations_and_to_all_but_one(self):
+        """Shipped medians and spread follow from what fits each installation; so do those with one left out."""
+        bench = trust.Bench(PIRSIM, self.folder / "fit", [1], 1)
+
+        def sensitivity(folder, name):
+            numbers = re.search(r"^sensitivity: {median: ([\d.]+), installation_sd: ([\d.]+)", (folder / name).read_text(), re.M)
+            return [float(x) for x in numbers.groups()]
+        for left_out in (None, "office", "meetings"):
+            folder = bench.data("HC-SR501.yaml").parent if left_out is None else bench.out / f"data_without_{left_out}/sensors"
+            if left_out is not None:
+                trust.without(bench, left_out)
+            logs = {k: math.log(v) for k, v in {"bench": 1.1, "office": 3.1, "cube": 3.7, "meetings": 9.5, "house": 9.6}.items()
+                    if k != left_out}
+            modules = [logs[k] for k in ("bench", "office", "cube") if k in logs]
+            with self.subTest(left_out):
+                for name, fitted in (("HC-SR501.yaml", modules), ("EKMC1601111.yaml", list(logs.values()))):
+                    median, spread = sensitivity(folder, name)
+                    self.assertLess(abs(math.log(median) - statistics.mean(fitted)), 0.03)
+                    self.assertLess(abs(spread - statistics.stdev(logs.values())), 0.05)
+                self.assertEqual(sensitivity(folder, "SML001.yaml")[0], 0.7)
 
     def test_a_figure_comes_into_its_page(self):
         page = self.folder / "page.md"
